@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from fem_adhesion.common.numbers import counted, digits, listed
-from fem_adhesion.common.page import Columns, Table, data_rows
+from fem_adhesion.common.page import Columns, Table, data_rows, titled
 from fem_adhesion.greenwood import measures
 from fem_adhesion.greenwood.facts import Facts, exact
 from fem_adhesion.greenwood.tables import TABORS, last_digit
@@ -171,20 +171,16 @@ def distance(computed: Estimate, allowed: Allowed, unit: str) -> str:
 def tables(claims: Sequence[Judged], facts: Facts) -> list[Table]:
     """Claims with printed and computed numbers, verdicts and where each is seen; and what else they rest on."""
     columns: Columns[Judged] = {
-        "section": lambda c: c.claim.section,
-        "claim (what is measured)": lambda c: c.claim.words,
+        ("section", "claim (what is measured)"): lambda c: (c.claim.section, c.claim.words),
         "printed": lambda c: c.claim.allowed.printed,
         ("computed", "error", "unit"): lambda c: (*_cells(c.computed), c.claim.unit),
         "verdict": lambda c: f"{c.verdict}: {c.how}" if c.how else c.verdict,
-        "holds for": lambda c: c.claim.allowed.interval,
-        "shown by": lambda c: c.claim.shown,
+        ("holds for", "shown by"): lambda c: (c.claim.allowed.interval, c.claim.shown),
     }
     rest = [(what, f"{mu:g}", *_cells(computed), unit) for what, mu, computed, unit in numbers(facts)]
-    see = "Forces on coarse grids and by a wrong sum are wrong on purpose: their error is that of rounding."
-    names, title = ("quantity", "mu", "computed", "error", "unit"), "Numbers that claims rest on and no other table has"
     return [
-        Table.of("claims", "Every claim, in the order of the paper", words(claims), claims, columns),
-        Table("claims_numbers", title, see, names, rest),
+        Table.of(*titled("greenwood", "claims", **counts(claims)), claims, columns),
+        Table(*titled("greenwood", "claims_numbers"), ("quantity", "mu", "computed", "error", "unit"), rest),
     ]
 
 
@@ -198,16 +194,12 @@ def _cells(number: Estimate) -> tuple[str, str]:
     return value if abs(number.value) > 1e-9 else f"{number.value:.1e}", f"{number.error:.1e}"
 
 
-def words(claims: Sequence[Judged]) -> str:
-    """How many claims there are of each verdict, and what decides."""
+def counts(claims: Sequence[Judged]) -> dict[str, str]:
+    """How many claims there are, and of each verdict."""
     of = Counter(claim.verdict for claim in claims)
     kinds = {HOLDS: "hold", FAILS: "do not", MISPRINT: "are misprints", OPEN: "stay open"}
-    each = listed([f"{of[kind]} {text}" for kind, text in kinds.items()])
-    return (
-        f"Of {counted(len(claims), 'claim')}, {each}. A claim "
-        "holds if the computed number lies with its error in the interval that the paper's words give; where they give "
-        "no number, the interval is ours and says so. A misprint fails as printed and holds as it is read here."
-    )
+    verdicts = listed([f"{of[kind]} {text}" for kind, text in kinds.items()])
+    return {"claims": counted(len(claims), "claim"), "verdicts": verdicts}
 
 
 def caption(stem: str, claims: Sequence[Judged]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from fem_adhesion.common.numbers import digits, joined, plus_minus, told
-from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
+from fem_adhesion.common.page import Columns, Section, Table, bullets, said, titled, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import claims
 from fem_adhesion.greenwood.drawing import Plot, drawn, elements_beside, table
@@ -24,8 +24,6 @@ from halfspace.equilibrium.events import Event
 from halfspace.theories.criteria import fundamental_criterion
 from halfspace.values import Estimate
 
-PAPER = "J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1277-1297"
-DOI = "10.1098/rspa.1997.0070"
 FIGURES = figures()
 """Title of each figure, and what makes its plot, by the name of its files: those of the paper, and further ones."""
 
@@ -60,37 +58,24 @@ def _picture(study: Greenwood1997, stem: str, plot: Plot) -> Picture[Greenwood19
 def lead(study: Greenwood1997) -> Iterator[str]:
     """What kind of run it was, what failed that should not have, and what all figures have in common."""
     if study.quick:
-        yield "A quick run: fewer points, coarser tolerances, fewer sweeps allowed to Greenwood's iteration."
+        yield said("greenwood", "lead", "quick")
     if troubles := list(study.troubles()):
         failed = Markup("<strong>FAILED where it should not have, {} times:</strong>").format(len(troubles))
         yield failed + bullets(troubles)
-    link = Markup('<a href="https://doi.org/{}">{}</a>').format(DOI, DOI)
-    yield Markup("Figures and tables after {}, doi {}.").format(PAPER, link)
-    yield (
-        "Loads in R dgamma, positive in compression; gaps and approach in eps, the approach positive when pressed "
-        "together; radii in beta; pressures P in dgamma/(mu eps). Errors are estimated by refinement."
-    )
+    yield Markup(said("greenwood", "lead", "paper"))
+    yield said("greenwood", "lead", "units")
     if math.isfinite(study.critical_tabor.value):
-        critical = Markup("<strong>mu = {}</strong>").format(plus_minus(study.critical_tabor))
-        first = Markup("The curve under fixed grips first has a vertical tangent at {}; the paper says about 1.")
-        yield first.format(critical)
+        yield Markup(said("greenwood", "lead", "critical", mu=plus_minus(study.critical_tabor)))
 
 
 def tables(study: Greenwood1997) -> Iterator[Table]:
     """All tables in the order of the page."""
     a, b = study.tables.asymptote
-    fit = (
-        f"The asymptote f = a alpha*^(3/2) - b alpha*^2, fitted between 2e-5 and 1e-4, has a = {plus_minus(a)} and b = "
-        f"{plus_minus(b)} (standard errors of the fit; the paper: 1.84 and 7.7)."
-    )
-    title, fit = "Table 1: f(alpha*)/alpha*^(3/2) of the DMT force method", told(fit, a.value, b.value)
-    yield _printed("table_1", title, fit, "alpha*", study.tables.table_1)
-    title = "Table 2: jumping on and off under fixed grips"
-    notes = "The notes say what explains the others, or that nothing does."
-    yield _printed("table_2", title, notes, "mu", study.tables.table_2)
-    title = f"Pressures printed with Fig. 4, mu = {study.settings.winding_at:g}"
-    law = "The law is the corrected one, compression positive; the error is that of the rounded gap."
-    yield _printed("fig_4_checks", title, law, "gap H", study.tables.profile_checks)
+    fit = said("greenwood", "table_1", "fit", a=plus_minus(a), b=plus_minus(b))
+    yield _printed("table_1", told(fit, a.value, b.value), "alpha*", study.tables.table_1)
+    yield _printed("table_2", said("greenwood", "table_2", "fit"), "mu", study.tables.table_2)
+    fit, mu = said("greenwood", "fig_4_checks", "fit"), study.settings.winding_at
+    yield _printed("fig_4_checks", fit, "gap H", study.tables.profile_checks, mu=mu)
     yield _jumps(study)
     yield _cycles(study)
     yield _relaxations(study.relaxations)
@@ -100,34 +85,28 @@ def tables(study: Greenwood1997) -> Iterator[Table]:
         ("finite elements, R dgamma", "finite elements, error, R dgamma"): lambda p: _cells(p.finite_element),
     }
     both = [p.agree for p in study.pull_offs if p.finite_element]
-    see = f"Finite elements agree within both errors at {sum(both)} of {len(both)} Tabor parameters."
-    yield Table.of("pull_off", "Load at pull-off, Fig. 7", see, study.pull_offs, pull_offs)
+    yield Table.of(*titled("greenwood", "pull_off", agree=sum(both), both=len(both)), study.pull_offs, pull_offs)
     yield _rises(study)
     yield _true_jumps(study)
     yield _constants(study)
 
 
-def _printed(stem: str, title: str, see: str, column: str, entries: Sequence[Printed]) -> Table:
+def _printed(stem: str, see: str, column: str, entries: Sequence[Printed], **numbers: float) -> Table:
     """Printed and computed numbers; how many agree to their last digit, and which is off most."""
     columns: Columns[Printed] = {
-        "row": lambda p: p.row,
-        column: lambda p: f"{p.column:g}",
-        "unit": lambda p: p.unit,
-        "printed": lambda p: p.printed,
+        ("row", column, "unit", "printed"): lambda p: (p.row, f"{p.column:g}", p.unit, p.printed),
         ("computed", "error"): lambda p: _cells(p.computed),
-        "relative deviation": lambda p: f"{p.deviation:+.1e}",
-        "note": lambda p: p.note,
+        ("relative deviation", "note"): lambda p: (f"{p.deviation:+.1e}", p.note),
     }
     known = [entry for entry in entries if math.isfinite(entry.deviation)]
-    worst = max(known, key=lambda entry: abs(entry.deviation), default=None)
-    agreement = (
-        f"{sum(entry.to_last_digit for entry in entries)} of {len(entries)} values agree to their last printed digit.",
-        f"The largest relative deviation is {abs(worst.deviation):.1e}, in {worst.row} at {worst.column:g}."
-        if worst
-        else "",
-        "" if len(known) == len(entries) else f"{len(entries) - len(known)} are not numbers.",
-    )
-    return Table.of(stem, title, joined(*agreement, see), entries, columns)
+    agreement = [f"{sum(p.to_last_digit for p in entries)} of {len(entries)} values agree to their last printed digit."]
+    if known:
+        worst = max(known, key=lambda entry: abs(entry.deviation))
+        off = f"{abs(worst.deviation):.1e}, in {worst.row} at {worst.column:g}"
+        agreement.append(f"The largest relative deviation is {off}.")
+    if len(known) < len(entries):
+        agreement.append(f"{len(entries) - len(known)} are not numbers.")
+    return Table.of(stem, said("greenwood", stem, "title", **numbers), joined(*agreement, see), entries, columns)
 
 
 def _jumps(study: Greenwood1997) -> Table:
@@ -140,10 +119,8 @@ def _jumps(study: Greenwood1997) -> Table:
         ("W before, R dgamma", "error of W before, R dgamma"): of("take_off", "load"),
         ("W after, R dgamma", "error of W after, R dgamma"): of("landing", "load"),
     }
-    given = study.settings
-    title = f"Jumps of Fig. 2a, mu = {given.jumps_at:g}, primed in an apparatus of {given.apparatus:g} R dgamma/eps"
-    see = "Where each jump takes off and lands." if study.jumps else "No jump was found."
-    return Table.of("jumps", title, see, study.jumps, columns)
+    stem, title, see = titled("greenwood", "jumps", mu=study.settings.jumps_at, k=study.settings.apparatus)
+    return Table.of(stem, title, see if study.jumps else said("greenwood", "jumps", "none"), study.jumps, columns)
 
 
 def _cycles(study: Greenwood1997) -> Table:
@@ -160,21 +137,15 @@ def _cycles(study: Greenwood1997) -> Table:
         tuple(f"{end}: {what}" for end in ends for what in quantities): cells,
         ("energy lost, R dgamma eps", "error, R dgamma eps"): lambda c: _cells(c.energy_lost),
     }
-    title, see = (
-        f"Cycles of an apparatus, mu = {study.settings.devices_at:g}",
-        "The loss is the work of the base round the loop.",
-    )
-    return Table.of("devices", title, see, study.cycles, columns)
+    return Table.of(*titled("greenwood", "devices", mu=study.settings.devices_at), study.cycles, columns)
 
 
 def _relaxations(attempts: Sequence[Attempt]) -> Table:
     """Sweeps and times of the iterations of 1997."""
     columns: Columns[Attempt] = {
-        "mu": lambda a: f"{a.tabor:g}",
-        "iteration": lambda a: a.method,
+        ("mu", "iteration"): lambda a: (f"{a.tabor:g}", a.method),
         "sweeps": lambda a: "not converged" if a.sweeps is None else str(a.sweeps),
-        "seconds": lambda a: f"{a.seconds:.3f}",
-        "Newton, seconds": lambda a: f"{a.newton_seconds:.3f}",
+        ("seconds", "Newton, seconds"): lambda a: (f"{a.seconds:.3f}", f"{a.newton_seconds:.3f}"),
         "outcome": lambda a: a.outcome,
     }
     see = []
@@ -183,8 +154,7 @@ def _relaxations(attempts: Sequence[Attempt]) -> Table:
         done = [n for n in sweeps if n is not None]
         span = f", in {min(done)} to {max(done)} sweeps" if done else ""
         see.append(f"{name}: {len(done)} of {len(sweeps)} converged{span}.")
-    title = f"The iterations of 1997 on {NODES} uniform nodes, from the undeformed surfaces to H(0) = 0"
-    return Table.of("relaxation", title, joined(*see), attempts, columns)
+    return Table.of(*titled("greenwood", "relaxation", nodes=NODES, sweeps=joined(*see)), attempts, columns)
 
 
 def _rises(study: Greenwood1997) -> Table:
@@ -194,9 +164,9 @@ def _rises(study: Greenwood1997) -> Table:
         for spacing, rise in study.rises.items()
         for r in rise.ripples
     ]
-    see = joined(*(f"{spacing:g} beta: ended as {rise.ended}." for spacing, rise in study.rises.items()))
-    title = "Least load on uniform triangles that are too wide, Fig. 7: wrong on purpose, so without an error"
-    return Table("coarse_grids", title, see, ("spacing, beta", "mu", "least load, R dgamma"), rows)
+    ends = joined(*(f"{spacing:g} beta: ended as {rise.ended}." for spacing, rise in study.rises.items()))
+    columns = ("spacing, beta", "mu", "least load, R dgamma")
+    return Table(*titled("greenwood", "coarse_grids", ends=ends), columns, rows)
 
 
 def _true_jumps(study: Greenwood1997) -> Table:
@@ -209,9 +179,7 @@ def _true_jumps(study: Greenwood1997) -> Table:
         "b sigma'/sigma": lambda jump: f"{fundamental_criterion(jump[1].approach, jump[1].central_gap):.5f}",
         tuple(usable): lambda jump: [f"{predict(np.array(jump[0])):.5f}" for predict in usable.values()],
     }
-    see = "The fundamental criterion (4.3) expects b sigma'/sigma = -1 at the jump."
-    title = "True jumps on and the criteria's predictions"
-    return Table.of("criteria", title, see, study.jumps_on.items(), columns)
+    return Table.of(*titled("greenwood", "criteria"), study.jumps_on.items(), columns)
 
 
 def _constants(study: Greenwood1997) -> Table:
@@ -222,8 +190,7 @@ def _constants(study: Greenwood1997) -> Table:
         for name, printed, fitted in c.constants
     ]
     span = f" for mu = {min(study.jumps_on):g} to {max(study.jumps_on):g}" if study.jumps_on else ""
-    title = f"Constants of the criteria, refitted{span}"
-    return Table("criteria_constants", title, "Least squares of logarithms.", columns, rows)
+    return Table(*titled("greenwood", "criteria_constants", span=span), columns, rows)
 
 
 def _cells(estimate: Estimate | None) -> tuple[str, str]:

@@ -16,9 +16,7 @@ def _spaced(first: float, last: float, number: int) -> tuple[float, ...]:
     return tuple(float(value) for value in np.geomspace(first, last, number))
 
 
-def _specified() -> dict[float, Array]:
-    few = np.array([4, 3, 2.5, 2, 1.5, 1, 0.7, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0, -0.005, -0.01])
-    return {1.0: few, 2.0: few, 3.0: few, 5.0: np.linspace(1.4, 0.05, 120)}
+FEW = np.array([4, 3, 2.5, 2, 1.5, 1, 0.7, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0, -0.005, -0.01])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -30,7 +28,9 @@ class Settings(Valued):
     loads: Mapping[float, float] = field(default_factory=lambda: {0.02: 50.0})  # load where a curve ends, if not 5
     rtol: float = 1e-5  # relative accuracy of the events of curves; their points carry their own errors
     points: int = 300  # points of a drawn curve; a polygon through 150 shows corners
-    specified: Mapping[float, Array] = field(default_factory=_specified)  # central gaps prescribed, eps: Fig. 3
+    specified: Mapping[float, Array] = field(  # central gaps prescribed, eps: Fig. 3
+        default_factory=lambda: {1.0: FEW, 2.0: FEW, 3.0: FEW, 5.0: np.linspace(1.4, 0.05, 120)}
+    )
     jumps_at: float = 1.0  # Tabor parameter of Fig. 2a
     apparatus: float = 3.0  # stiffness of the apparatus of Fig. 2a
     winding_at: float = 5.0  # Tabor parameter of Fig. 4

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from scipy.optimize import curve_fit
@@ -97,19 +96,18 @@ def excess_asymptote() -> tuple[Estimate, Estimate]:
 
 def table_2(paths: Mapping[float, EquilibriumPath]) -> list[Printed]:
     """Table 2, jumping on and off, from converged paths at those of its Tabor parameters that are given."""
-    return [entry for row in data_rows("greenwood", "greenwood1997_table2.csv") for entry in _entries(row, paths)]
+    rows = data_rows("greenwood", "greenwood1997_table2.csv")
+    return [entry for row in rows for mu in TABORS if mu in paths for entry in _entries(row, paths[mu])]
 
 
-def _entries(row: Mapping[str, str], paths: Mapping[float, EquilibriumPath]) -> Iterator[Printed]:
-    name, quantity = row["event"], row["quantity"]
-    for tabor in TABORS:
-        printed, path = row[f"mu={tabor:g}"], paths.get(tabor)
-        event = path.event(name) if path else None
-        if path and printed and event:
-            computed, unit = _quantity(quantity, event, tabor)
-            note = "" if is_rounded(printed, computed) else explained(name, quantity, path, computed)
-            sizes = {"minus_alpha_star": path.approach_scale, "minus_alpha_star_over_mu": path.approach_scale / tabor}
-            yield Printed(f"{name} {quantity}", tabor, unit, printed, computed, note or LAST_DIGIT, sizes.get(quantity))
+def _entries(row: Mapping[str, str], path: EquilibriumPath) -> Iterator[Printed]:
+    name, quantity, mu = row["event"], row["quantity"], path.tabor
+    printed, event = row[f"mu={mu:g}"], path.event(name)
+    if printed and event:
+        computed, unit = _quantity(quantity, event, mu)
+        note = "" if is_rounded(printed, computed) else explained(name, quantity, path, computed)
+        sizes = {"minus_alpha_star": path.approach_scale, "minus_alpha_star_over_mu": path.approach_scale / mu}
+        yield Printed(f"{name} {quantity}", mu, unit, printed, computed, note or LAST_DIGIT, sizes.get(quantity))
 
 
 def _quantity(quantity: str, event: Event, tabor: float) -> tuple[Estimate, str]:
@@ -130,15 +128,33 @@ def _quantity(quantity: str, event: Event, tabor: float) -> tuple[Estimate, str]
 
 def explained(name: str, quantity: str, path: EquilibriumPath, computed: Estimate) -> str:
     """What explains a printed number that is off: each explanation is tried on the numbers of its column."""
-    column = printed_column(name, path.tabor)
-    printed = column[quantity]
-    notes: dict[str, Callable[[Mapping[str, str], float], str]] = {
-        "H0_plus_1_over_mu_3_7": _follows_from_gap,
-        "minus_alpha_star_over_mu": _follows_from_approach,
-        "minus_alpha_star": partial(_beyond_the_fold, name, computed),
-    }
-    note = notes[quantity](column, path.tabor) if quantity in notes else _beside(name, quantity, column, path)
+    column, mu = printed_column(name, path.tabor), path.tabor
+    printed, approach = column[quantity], column["minus_alpha_star"]
+    exchanged = _exchanged(approach, mu, column.get("minus_alpha_star_over_mu", ""))
+    note = ""
+    if quantity == "H0_plus_1_over_mu_3_7":
+        if _gives(column["H0"], mu ** (3 / 7), printed, shift=1):
+            note = f"follows from the printed H0 = {column['H0']}"
+    elif quantity == "minus_alpha_star_over_mu":
+        if exchanged:
+            note = f"follows from alpha* = -{exchanged}, not from the printed -{approach}"
+        elif _gives(approach, mu, printed):
+            note = f"follows from the printed alpha* = -{approach}"
+    elif quantity == "minus_alpha_star":
+        ratio = column.get("minus_alpha_star_over_mu")
+        notes = [f"digits exchanged, as {exchanged}/{mu:g} is the {ratio} of the next row"] if exchanged else []
+        if float(approach) + last_digit(approach) / 2 < computed.value - computed.error:
+            notes.append(SHORT_OF_THE_FOLD[name])
+        note = "; ".join(notes)
+    else:
+        note = _beside(name, quantity, column, path)
     return note or f"{UNEXPLAINED}: off by {computed.value - float(printed):+.1e}"
+
+
+SHORT_OF_THE_FOLD = {
+    "jump_on": "no separated state exists at the printed approach: the fold comes before it",
+    "jump_off": "short of the fold: states in contact exist beyond the printed approach",
+}
 
 
 def printed_column(name: str, tabor: float) -> dict[str, str]:
@@ -147,43 +163,17 @@ def printed_column(name: str, tabor: float) -> dict[str, str]:
     return {row["quantity"]: row[f"mu={tabor:g}"] for row in rows if row["event"] == name}
 
 
-def _follows_from_gap(column: Mapping[str, str], tabor: float) -> str:
-    """Whether (H0 + 1)/mu^(3/7) is what the printed H0 gives."""
-    gap, scale = column["H0"], tabor ** (3 / 7)
-    given = Estimate((float(gap) + 1) / scale, last_digit(gap) / 2 / scale)
-    return f"follows from the printed H0 = {gap}" if is_rounded(column["H0_plus_1_over_mu_3_7"], given) else ""
-
-
-def _follows_from_approach(column: Mapping[str, str], tabor: float) -> str:
-    """Whether -alpha*/mu is what the printed approach gives, as it stands or with two digits exchanged."""
-    approach, ratio = column["minus_alpha_star"], column["minus_alpha_star_over_mu"]
-    if _divides(approach, tabor, ratio):
-        return f"follows from the printed alpha* = -{approach}"
-    other = _exchanged(approach, tabor, ratio)
-    return f"follows from alpha* = -{other}, not from the printed -{approach}" if other else ""
-
-
-def _divides(approach: str, tabor: float, ratio: str) -> bool:
-    return is_rounded(ratio, Estimate(float(approach) / tabor, last_digit(approach) / 2 / tabor))
+def _gives(number: str, scale: float, printed: str, shift: float = 0.0) -> bool:
+    """Whether a printed number is what another one, shifted and divided, gives."""
+    return is_rounded(printed, Estimate((float(number) + shift) / scale, last_digit(number) / 2 / scale))
 
 
 def _exchanged(approach: str, tabor: float, ratio: str) -> str:
-    """The printed approach with two neighbouring digits exchanged, if that gives the printed ratio; else nothing."""
+    """The printed approach with two neighbouring digits exchanged, if that and not itself gives the printed ratio."""
+    if not ratio or _gives(approach, tabor, ratio):
+        return ""
     swaps = (approach[:i] + approach[i + 1] + approach[i] + approach[i + 2 :] for i in range(len(approach) - 1))
-    return next((s for s in swaps if s[1:2] == "." and _divides(s, tabor, ratio)), "")
-
-
-def _beyond_the_fold(name: str, computed: Estimate, column: Mapping[str, str], tabor: float) -> str:
-    """What it means that a printed approach is not that of the fold."""
-    approach, ratio = column["minus_alpha_star"], column.get("minus_alpha_star_over_mu", "")
-    digits = ""
-    if ratio and not _divides(approach, tabor, ratio) and (other := _exchanged(approach, tabor, ratio)):
-        digits = f"digits exchanged, as {other}/{tabor:g} is the {ratio} of the next row; "
-    if float(approach) + last_digit(approach) / 2 >= computed.value - computed.error:
-        return digits.rstrip("; ")
-    if name == "jump_on":
-        return f"{digits}no separated state exists at the printed approach: the fold comes before it"
-    return f"{digits}short of the fold: states in contact exist beyond the printed approach"
+    return next((s for s in swaps if s[1:2] == "." and _gives(s, tabor, ratio)), "")
 
 
 def _beside(name: str, quantity: str, column: Mapping[str, str], path: EquilibriumPath) -> str:
@@ -202,7 +192,7 @@ def _beside(name: str, quantity: str, column: Mapping[str, str], path: Equilibri
     beside = abs(approach - path.events[name].approach) <= BESIDE * path.approach_scale
     explains = beside and meets.get(quantity, meets["H0"] or meets.get("a_star", False))
     numbers = [
-        f"{symbol} = {value:.{_decimals(text) + 1}f} ({'as' if meets[key] else 'not the'} printed {text})"
+        f"{symbol} = {value:.{len(text.partition('.')[2]) + 1}f} ({'as' if meets[key] else 'not the'} printed {text})"
         for key, text in printed.items()
         for symbol, value in (ours[key],)
     ]
@@ -229,8 +219,4 @@ def is_rounded(printed: str, computed: Estimate) -> bool:
 
 def last_digit(printed: str) -> float:
     """One unit of the last digit of a printed number."""
-    return float(10.0 ** -_decimals(printed))
-
-
-def _decimals(printed: str) -> int:
-    return len(printed.partition(".")[2])
+    return float(10.0 ** -len(printed.partition(".")[2]))

@@ -47,12 +47,8 @@ Family = Literal["half-space", "finite elements"]
 Variant = Literal["", "clamped", "monolithic"]
 
 
-@dataclass(frozen=True)
-class Solved:
-    """What one rung yields: unknowns, elastic ones included, and those of `QUANTITIES` that the method gives."""
-
-    unknowns: int
-    values: Mapping[str, float]
+Solved = tuple[int, Mapping[str, float]]
+"""What one rung yields: unknowns, elastic ones included, and those of `QUANTITIES` that the method gives."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +107,7 @@ def from_chart(problem: Traceable, unknowns: int) -> Solved:
     values = {"pull_off": float(found["pull_off"].point.observables[LOAD])}
     if (loss := energy_lost(segments, found)) is not None:
         values |= {"jump_on": float(found["jump_on"].point.observables[APPROACH]), "hysteresis": loss}
-    return Solved(unknowns, values)
+    return unknowns, values
 
 
 def unit(tabor: float) -> float:
@@ -153,15 +149,12 @@ def halfspace_methods() -> list[Method]:
 def ladder(solve: Callable[..., Solved], names: str, rungs: Sequence[tuple[Any, ...]]) -> list[Step]:
     """Rungs of settings, each solved by `solve(tabor, *settings)`, named by those of the settings that have names."""
 
-    def told(settings: tuple[Any, ...]) -> str:
+    def step(settings: tuple[Any, ...]) -> Step:
         named = zip(names.split(), settings, strict=False)
-        return " ".join(f"{name}={value:.0e}" if name == "rtol" else f"{name}={value:g}" for name, value in named)
+        told = [f"{name}={value:.0e}" if name == "rtol" else f"{name}={value:g}" for name, value in named]
+        return Step(" ".join(told), lambda tabor: solve(tabor, *settings))
 
-    return [Step(told(settings), partial(_solved, solve, settings)) for settings in rungs]
-
-
-def _solved(solve: Callable[..., Solved], settings: tuple[Any, ...], tabor: float) -> Solved:
-    return solve(tabor, *settings)
+    return [step(settings) for settings in rungs]
 
 
 def adaptive(trace: Callable[..., EquilibriumPath], digits: Iterable[int]) -> list[Step]:
@@ -169,7 +162,7 @@ def adaptive(trace: Callable[..., EquilibriumPath], digits: Iterable[int]) -> li
 
     def solve(tabor: float, rtol: float) -> Solved:
         path = trace(tabor, rtol=rtol)
-        return Solved(path.unknowns, {name: estimate.value for name, estimate in estimates(path).items()})
+        return path.unknowns, {name: estimate.value for name, estimate in estimates(path).items()}
 
     return ladder(solve, "rtol", [(10.0**-k,) for k in digits])
 
@@ -205,7 +198,7 @@ Relaxation = Callable[[ContactProblem, Array, Control], Relaxed]
 def _relaxed(relax: Relaxation, tabor: float, f: float, U: float, growth: float) -> Solved:
     nodes = _graded(tabor, f, U, growth, fine_radius=2.2)
     problem = ContactProblem(compliance.triangles(nodes), tabor)
-    return Solved(nodes.size, {"pull_off": pull_off_by_sweep(problem, relax)})
+    return nodes.size, {"pull_off": pull_off_by_sweep(problem, relax)}
 
 
 def _simple(problem: ContactProblem, start: Array, control: Control) -> Relaxed:

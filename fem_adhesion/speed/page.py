@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from matplotlib.ticker import NullFormatter
 
 from fem_adhesion.common import style
 from fem_adhesion.common.facts import machine, versions
-from fem_adhesion.common.page import Columns, Table, markdown, write_csv
+from fem_adhesion.common.page import Columns, Item, Table, markdown, said, write_csv
 from fem_adhesion.common.style import Picture, captions, draw
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
 from fem_adhesion.speed.study import (
@@ -35,19 +35,7 @@ from fem_adhesion.speed.study import (
 )
 from halfspace.errors import InputError
 
-CAPTION = "Error against wall time: half-space left, finite elements right."
 FAMILIES: tuple[Family, ...] = ("half-space", "finite elements")
-TITLES = {
-    "pull_off": "Pull-off load",
-    "jump_on": "Approach at which the surfaces jump on",
-    "hysteresis": "Energy lost in a cycle of approach and separation",
-}
-ERRORS = {
-    "pull_off": "relative error of the pull-off load",
-    "jump_on": "error of the jump-on approach, over spacing and range of approaches",
-    "hysteresis": "relative error of the energy lost",
-}
-UNITS = {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
 COLOURS = (style.ORANGE, style.SKY, style.GREEN, style.BLUE, style.RED, style.PINK)
 STYLES = tuple(zip(COLOURS, "XPs^vD", strict=True))  # of the bases of a family; black dots are adaptive
 LINES = {"": "-", "clamped": "--", "monolithic": ":"}
@@ -60,10 +48,11 @@ HIDDEN: dict[str, Any] = {"color": "0.4", "linestyle": "none", "marker": r"$\dow
 
 def pictures(study: SpeedStudy) -> list[Picture[SpeedStudy]]:
     """A figure for each quantity that the study has."""
-    caption = "Error against wall time: half-space left, finite elements right."
     return [
-        Picture(quantity, TITLES[quantity], partial(error_against_time, quantity=quantity), lambda _: [caption])
-        for quantity in study.quantities
+        Picture(
+            q, said("speed", q, "title"), partial(error_against_time, quantity=q), lambda _: [said("speed", "figure")]
+        )
+        for q in study.quantities
     ]
 
 
@@ -74,8 +63,7 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
     usual are hollow; an arrow downwards hangs on every error that is no more than the uncertainty of the truth.
     """
     figure = Figure(figsize=(11.5, 7.2), layout="constrained")
-    quick = ", quick run" if study.quick else ""
-    figure.suptitle(f"{TITLES[quantity]}: error against wall time at Tabor parameter {study.tabor:g}{quick}")
+    figure.suptitle(said("speed", "figure", "title", quantity=said("speed", quantity, "title"), **run_words(study)))
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
 
     def draw_rungs(
@@ -103,14 +91,14 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
                 "markersize": 7,
                 "linestyle": LINES[method.variant],
             }
-            look["markerfacecolor"] = "white" if method.variant else colour
-            draw_rungs(axes, study.of(method.name), method.name, **look)
+            face = "white" if method.variant else colour
+            draw_rungs(axes, study.of(method.name), method.name, **look, markerfacecolor=face)
         hidden = [rung for method in methods for rung in study.of(method.name) if rung.hidden(quantity)]
         draw_rungs(axes, hidden, "within that uncertainty", low=0.75, **HIDDEN)
         axes.set_title(f"{family}, judged by the {study.truths[family].family}")
         axes.tick_params(labelleft=True)
         axes.xaxis.set_minor_formatter(NullFormatter())  # of less than two decades they print over each other
-        label = ERRORS[quantity] if axes is panels[0] else ""
+        label = said("speed", quantity, "error") if axes is panels[0] else ""
         style.dress(axes, "wall time from set-up to events, s", label, legend="below", columns=2)
     return figure
 
@@ -131,13 +119,17 @@ def write(study: SpeedStudy, directory: Path) -> None:
     draw(pictures(study), study, directory)
 
 
+def run_words(study: SpeedStudy) -> dict[str, Any]:
+    """Which run it was, for titles."""
+    return {"tabor": study.tabor, "quick": ", quick run" if study.quick else ""}
+
+
 def _rungs(study: SpeedStudy) -> Table:
     """Every rung; what is not known is left empty."""
     errors = tuple(f"{quantity}_{what}" for quantity in QUANTITIES for what in ("error", "truth_uncertainty"))
     columns: Columns[Timing] = {
         "tabor": lambda _: f"{study.tabor!r}",
-        "method": lambda rung: rung.method,
-        "setting": lambda rung: rung.setting,
+        ("method", "setting"): lambda rung: (rung.method, rung.setting),
         "unknowns": lambda rung: "" if rung.unknowns is None else str(rung.unknowns),
         "seconds": lambda rung: _number(rung.seconds, "{:.4f}"),
         "yardsticks": lambda rung: _number(rung.seconds / study.yardstick, "{:.0f}"),
@@ -145,8 +137,7 @@ def _rungs(study: SpeedStudy) -> Table:
         errors: lambda rung: [
             _number(value, "{:.3e}") for q in QUANTITIES for value in (rung.error(q), rung.floors.get(q, math.nan))
         ],
-        "outcome": lambda rung: rung.status,
-        "reason": lambda rung: rung.reason,
+        ("outcome", "reason"): lambda rung: (rung.status, rung.reason),
     }
     return Table.of("speed", "", "", study.rungs, columns)
 
@@ -157,26 +148,28 @@ def _number(value: float, form: str) -> str:
 
 def parts(study: SpeedStudy) -> Iterator[str | Table]:
     """Lines and tables of the page."""
-    yield f"# Error against wall time at Tabor parameter {study.tabor:g}{', quick run' if study.quick else ''}"
+    yield "# Error against wall time at Tabor parameter {tabor:g}{quick}".format(**run_words(study))
     yield ""
     yield from verdict(study)
     yield ""
     yield from (f"* {key}: {value}" for key, value in (machine() | versions()).items())
     yield f"* yardstick, one dgesv of n = 200: {study.yardstick * 1e3:.2f} ms"
     yield _truths(study)
-    yield _costs(study, "What it costs to have every quantity that a method gives", None)
-    yield from (_costs(study, f"What it costs to have {quantity}", quantity) for quantity in study.quantities)
+    yield from (_costs(study, quantity) for quantity in (None, *study.quantities))
     if study.earlier:
         yield from (_beside(study, study.earlier, quantity) for quantity in study.quantities)
     yield _exponents(study)
     yield _growths(study)
     failures: Columns[Timing] = {
-        "method": lambda rung: rung.method,
-        "setting": lambda rung: rung.setting,
-        "outcome": lambda rung: rung.status,
-        "reason": lambda rung: rung.reason,
+        ("method", "setting"): lambda rung: (rung.method, rung.setting),
+        ("outcome", "reason"): lambda rung: (rung.status, rung.reason),
     }
-    yield Table.of("", "Rungs without result", "", (rung for rung in study.rungs if not rung.converged), failures)
+    yield _table("failures", (rung for rung in study.rungs if not rung.converged), failures)
+
+
+def _table(name: str, items: Iterable[Item], columns: Columns[Item], **numbers: Any) -> Table:
+    """Table of the page, which has no file of its own."""
+    return Table.of("", said("speed", name, "title", **numbers), "", items, columns)
 
 
 def verdict(study: SpeedStudy) -> Iterator[str]:
@@ -193,20 +186,19 @@ def verdict(study: SpeedStudy) -> Iterator[str]:
 
 def _truths(study: SpeedStudy) -> Table:
     """What the errors are taken against, and whether the two truths agree."""
-    title = "The truths: each family is judged by the other; an error below the truth's own uncertainty is shown as <"
     judges = tuple(f"judge of the {judged}: {t.family}, rtol {t.rtol:.0e}" for judged, t in study.truths.items())
     both = {quantity: [truth.values[quantity] for truth in study.truths.values()] for quantity in study.quantities}
     columns: Columns[str] = {
         "quantity": str,
-        "unit": lambda name: UNITS[name],
+        "unit": lambda name: said("speed", name, "unit"),
         judges: lambda name: [f"{one.value:.12g}, error {one.error:.0e}" for one in both[name]],
         "difference": lambda name: f"{abs(both[name][0].value - both[name][1].value):.0e}",
         "within both errors": lambda name: "yes" if both[name][0].agrees(both[name][1]) else "NO",
     }
-    return Table.of("", title, "", study.quantities, columns)
+    return _table("truths", study.quantities, columns)
 
 
-def _costs(study: SpeedStudy, title: str, quantity: str | None) -> Table:
+def _costs(study: SpeedStudy, quantity: str | None) -> Table:
     """One line per method: seconds to each tolerance, and the best that it reached."""
 
     def cost(method: Method, tolerance: float) -> str:
@@ -228,7 +220,7 @@ def _costs(study: SpeedStudy, title: str, quantity: str | None) -> Table:
         "to 1e-06": lambda method: cost(method, 1e-6),
         "best reached": reached,
     }
-    return Table.of("", title, "", study.methods, columns)
+    return _table("costs", study.methods, columns, what=quantity or said("speed", "costs", "all"))
 
 
 def _beside(study: SpeedStudy, earlier: Earlier, quantity: str) -> Table:
@@ -242,9 +234,7 @@ def _beside(study: SpeedStudy, earlier: Earlier, quantity: str) -> Table:
             for cost, rung in zip(costs, (before, now), strict=True)
         ]
         rows.append([f"{tolerance:.0e}", *cells, _number(costs[1] / costs[0], "{:.2f}") or "-"])
-    title = (
-        f"The front of {quantity} beside that of {earlier.name}: yardsticks of the fastest method, each of its own run"
-    )
+    title = said("speed", "beside", "title", quantity=quantity, name=earlier.name)
     return Table("", title, "", ("tolerance", "earlier", "now", "now / earlier"), rows)
 
 
@@ -254,23 +244,17 @@ def _exponents(study: SpeedStudy) -> Table:
         "rungs": lambda method: str(sum(rung.converged for rung in study.of(method.name))),
         EXPONENTS: lambda method: [_number(b, "{:.2f}") or "-" for b in study.exponents(method.name).values()],
     }
-    title = "How the cost grows: exponents b fitted to cost ~ x^b; the error is that of pull_off"
-    return Table.of("", title, "", study.methods, columns)
+    return _table("exponents", study.methods, columns)
 
 
 def _growths(study: SpeedStudy) -> Table:
-    title = (
-        "How the time of the solvers with error control grows: exponents b of time ~ x^b, 0 where only the logarithm "
-        f"of x counts; at a Tabor parameter of {TABOR:g} and an rtol of {RTOL:.0e}, unless they are what grows"
-    )
     columns: Columns[Growth] = {
-        "solver": lambda growth: growth.solver,
-        "x": lambda growth: growth.grows,
+        ("solver", "x"): lambda growth: (growth.solver, growth.grows),
         "time": lambda growth: ", ".join(f"{s:.2f} s at {x:g}" for x, s in zip(growth.at, growth.seconds, strict=True)),
         "b": lambda growth: _number(growth.exponent, "{:.2f}") or "-",
         "b expected at most": lambda growth: f"{growth.expected:g}",
     }
-    return Table.of("", title, "", study.growths, columns)
+    return _table("growths", study.growths, columns, tabor=TABOR, rtol=RTOL)
 
 
 # An earlier run, read back from its table
@@ -278,23 +262,25 @@ def _growths(study: SpeedStudy) -> Table:
 
 def read_earlier(path: Path, tabor: float) -> Earlier:
     """Read ``speed.csv`` of an earlier run at the same Tabor parameter, or raise InputError."""
+
+    def refused(which: str, why: object = "") -> InputError:
+        return InputError(said("speed", "earlier", which, path=path, why=why, tabor=tabor))
+
     try:
         with path.open(newline="") as file:
             rows = list(csv.DictReader(file))
         at = {float(row["tabor"]) for row in rows}
         rungs = tuple(_rung(row) for row in rows if row["outcome"] == "converged")
     except OSError as error:
-        raise InputError(
-            f"beside = {path} cannot be read: {error.strerror}; give speed.csv of an earlier run"
-        ) from None
+        raise refused("unread", error.strerror) from None
     except KeyError as error:
-        raise InputError(f"beside = {path} has no column {error}; give speed.csv of this version's study") from None
+        raise refused("column", error) from None
     except (TypeError, ValueError, csv.Error) as error:
-        raise InputError(f"beside = {path} is no table of a speed study ({error}); give its speed.csv") from None
+        raise refused("no_table", error) from None
     if not rungs:
-        raise InputError(f"beside = {path} has no rung with a result; give speed.csv of an earlier run")
+        raise refused("empty")
     if at != {tabor}:
-        raise InputError(f"beside = {path} is of tabor {', '.join(f'{t:g}' for t in sorted(at))}, not {tabor:g}")
+        raise refused("other", ", ".join(f"{t:g}" for t in sorted(at)))
     return Earlier(str(path), rungs)
 
 

@@ -312,7 +312,7 @@ def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) ->
     """One rung: run it, time it again if asked, and compare with the truth."""
     began = time.perf_counter()
     try:
-        solved, memory = with_peak_memory(lambda: step.run(tabor))
+        (unknowns, values), memory = with_peak_memory(lambda: step.run(tabor))
     except (InputError, NotConverged) as error:
         refused: Status = "refused" if isinstance(error, InputError) else "failed"
         status: Status = "too coarse" if isinstance(error, GridTooCoarse) else refused
@@ -321,12 +321,12 @@ def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) ->
     if again:
         seconds = min(seconds, _seconds(lambda: step.run(tabor)))
     errors = {  # not below the truth's own uncertainty, since nothing less can be told
-        name: truth.relative(name, max(abs(solved.values[name] - true.value), true.error))
+        name: truth.relative(name, max(abs(values[name] - true.value), true.error))
         for name, true in truth.values.items()
-        if name in solved.values
+        if name in values
     }
     floors = {name: truth.relative(name, true.error) for name, true in truth.values.items()}
-    return Timing(method, step.setting, "converged", seconds, "", solved.unknowns, memory, errors, floors)
+    return Timing(method, step.setting, "converged", seconds, "", unknowns, memory, errors, floors)
 
 
 # How the time grows

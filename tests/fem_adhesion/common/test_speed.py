@@ -17,7 +17,7 @@ from fem_adhesion.common.page import markdown
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
-from fem_adhesion.speed.methods import QUANTITIES, Method, Solved, Step, element_methods, halfspace_methods
+from fem_adhesion.speed.methods import QUANTITIES, Method, Step, element_methods, halfspace_methods
 from fem_adhesion.speed.page import read_earlier
 from fem_adhesion.speed.study import (
     GROWTHS,
@@ -186,7 +186,7 @@ def test_a_wrong_half_space_is_not_its_own_judge(monkeypatch):
 
 
 def counted_method(runs, quick):
-    steps = [Step(str(n), lambda tabor, n=n: runs.append(n) or Solved(n, {"pull_off": tabor})) for n in range(3)]
+    steps = [Step(str(n), lambda tabor, n=n: runs.append(n) or (n, {"pull_off": tabor})) for n in range(3)]
     return Method("half-space", "counted", steps, quick)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import halfspace
+from fem_adhesion.common.page import titled
 from fem_adhesion.greenwood import claims, facts
 from fem_adhesion.greenwood.claims import CLAIMS, FAILS, HOLDS, MISPRINT, OPEN, Allowed, decide, judge
 from halfspace.laws.law import require_law
@@ -155,8 +156,8 @@ def test_numbers_of_the_claims_are_in_their_table(rows, study):
 
 def test_the_count_of_verdicts_is_told(study):
     judged = study.claims
-    told = claims.words(judged)
+    told = titled("greenwood", "claims", **claims.counts(judged))[2]
     assert told.startswith(f"Of {len(judged)} claims, ")
     assert f"{sum(c.verdict == HOLDS for c in judged)} hold" in told
     assert f"{sum(c.verdict == FAILS for c in judged)} do not" in told
-    assert claims.words(()).startswith("Of 0 claims, 0 hold")
+    assert claims.counts(())["verdicts"].startswith("0 hold")
