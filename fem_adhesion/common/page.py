@@ -151,12 +151,12 @@ def _texts(folder: str) -> Mapping[str, Mapping[str, str]]:
     return tomllib.loads(data_text(folder, "texts.toml"))
 
 
-def said(folder: str, stem: str, what: str = "see", **numbers: Any) -> str:
+def said(folder: str, stem: str, what: str = "see", /, **numbers: Any) -> str:
     """Text of ``data/texts.toml`` of a folder, with numbers put in."""
     return _texts(folder)[stem].get(what, "").format(**numbers)
 
 
-def titled(folder: str, stem: str, **numbers: Any) -> tuple[str, str, str]:
+def titled(folder: str, stem: str, /, **numbers: Any) -> tuple[str, str, str]:
     """Stem, title and what is to be seen of a table, of which ``data/texts.toml`` of a folder has the texts."""
     return stem, said(folder, stem, "title", **numbers), said(folder, stem, "see", **numbers)
 

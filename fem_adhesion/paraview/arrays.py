@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TypeVar
 
 import numpy as np
 
 from fem_adhesion.common.facts import plain
-from fem_adhesion.common.page import data_rows
+from fem_adhesion.common.page import data_rows, said
 from fem_adhesion.elasticity import stress as stresses
 from fem_adhesion.fields import Beside, State
 from fem_adhesion.paraview.cells import Cut, Solid
@@ -28,48 +28,28 @@ LARGEST_STRAIN = 0.5  # drawn at most: the cells stay far from turning inside ou
 TO_SCALE = 5.0  # magnification of the true displacement below which it is not worth its distortion
 
 
-@dataclass(frozen=True)
-class Unit:
-    """Unit of an array: the paper's in words, and its name in `halfspace.scaling.IN_SI`, none without a dimension."""
-
-    words: str
-    quantity: str = ""
-
-    def in_si(self, units: Units) -> tuple[float, str]:
-        """Size in SI, and what its unit puts behind a name."""
-        if not self.quantity:
-            return 1.0, ""
-        size, unit = units.si(self.quantity)
-        return size, "_" + unit.replace("/", "_per_").replace("^", "")
-
-
 ARRAYS = data_rows("paraview", "arrays.csv")
-UNITS = {row["array"]: Unit(row["unit"], row["quantity"]) for row in ARRAYS if row["unit"]}
+UNITS = {row["array"]: (row["unit"], row["quantity"]) for row in ARRAYS if row["unit"]}
 MEANINGS = {row["array"]: row["meaning"] for row in ARRAYS if row["meaning"]}
 COMPONENTS = {row["array"]: tuple(row["components"].split()) for row in ARRAYS if row["components"]}
 COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))  # the same in the solid of revolution
-"""Units of the arrays and of the numbers in the field data, what they are, and names of their components."""
-
-SIGNS = (
-    "pressure, traction and load positive in compression, stress in tension; approach positive when pressed together; "
-    "displacement z upwards, out of the body; deflection positive into the body"
-)
-
-NAMES = (
-    "a name that ends in a unit of SI holds values in that unit; any other holds values in the units above; points are "
-    "in m where a material is given"
-)
+"""Of arrays and of numbers in the field data: units in words with their names in `halfspace.scaling.IN_SI`, empty
+without a dimension; what they are; names of their components."""
 
 
-def unit_of(name: str) -> Unit:
+def unit_of(name: str) -> tuple[str, str]:
     """Unit of an array by its name, of the half-space's arrays too."""
     return UNITS[name.partition("_of_half_space")[0].removesuffix("_from_stress")]
 
 
 def in_si(arrays: Mapping[str, Numbers], units: Units) -> dict[str, Numbers]:
     """Numbers or arrays in SI, the unit at the end of their names; those without a dimension as they are."""
-    found = {name: unit_of(name).in_si(units) for name in arrays}
-    return {f"{name}{suffix}": arrays[name] * size for name, (size, suffix) in found.items()}
+    found = {}
+    for name, values in arrays.items():
+        _, quantity = unit_of(name)
+        size, unit = units.si(quantity) if quantity else (1.0, "")
+        found[f"{name}_{unit.replace('/', '_per_').replace('^', '')}" if unit else name] = values * size
+    return found
 
 
 def inside(state: State, cut: Cut, scale: float) -> Named:
@@ -161,26 +141,18 @@ def numbers(state: State, scale: float, units: Units | None) -> dict[str, float]
     return found
 
 
-HOW_MAGNIFIED = (
-    "displacement_magnified is displacement times magnified_beta_per_displacement_unit, in all states alike: the "
-    f"largest of 1, 2, 5 times a power of ten at which no strain is drawn as more than {LARGEST_STRAIN:g}, or to scale "
-    f"if that is less than {TO_SCALE:g} times the true displacement"
-)
-
-
 def words(scene: Scene) -> dict[str, object]:
     """What the arrays are, for people: units, meanings, components, signs."""
-    where = "at the same contact radius, or central gap without contact"
-    other = "another body than this" if scene.left_out else "the same contact, solved by the integral equation"
+    other = said("paraview", "notes", "another" if scene.left_out else "same")
     return {
         "scene": plain(asdict(scene)),
-        "units": {name: unit.words for name, unit in UNITS.items()},
-        "names": NAMES,
+        "units": {name: unit for name, (unit, _) in UNITS.items()},
+        "names": said("paraview", "notes", "names"),
         "meanings": dict(MEANINGS),
         "components": dict(COMPONENTS),
-        "signs": SIGNS,
-        "magnification": HOW_MAGNIFIED,
-        "half_space": f"{other}, under the same profile, {where}",
+        "signs": said("paraview", "notes", "signs"),
+        "magnification": said("paraview", "notes", "magnification", strain=LARGEST_STRAIN, to_scale=TO_SCALE),
+        "half_space": said("paraview", "notes", "half_space", other=other),
     }
 
 

@@ -80,15 +80,6 @@ class MeridianSection(Valued):
     interfaces: tuple[Array, ...]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Surfaces(Valued):
-    """Lines (2, n) of radius and height as drawn: the body's surface, undeformed and deformed, and the wall."""
-
-    undeformed: Array
-    deformed: Array
-    wall: Array
-
-
 def view_of(states: Sequence[State]) -> View:
     """View in which all states of one scene are seen: given all, or those that bound them with the widest contact."""
     first = states[0]
@@ -104,7 +95,7 @@ def view_of(states: Sequence[State]) -> View:
     if to_scale:
         depth = min(depth, -float(first.space.mesh.p[1].min()))
     largest = max(float(np.abs(state.pressure).max()) for state in states)
-    top = max(float(surfaces(state, reach, heights).wall[1].max()) for state in states)
+    top = max(float(surfaces(state, reach, heights)["wall"][1].max()) for state in states)
     return View(reach, depth, top, heights, min(LOOK.strongest, largest))
 
 
@@ -124,8 +115,11 @@ def section(state: State, view: View) -> MeridianSection:
     return MeridianSection(points, linear.reshape(-1, linear.shape[2]), stress, interfaces)
 
 
-def surfaces(state: State, reach: float, heights: float) -> Surfaces:
-    """Lines of the surfaces out to a radius in beta, with beta^2/R of height drawn as `heights` in beta."""
+def surfaces(state: State, reach: float, heights: float) -> dict[str, Array]:
+    """Lines (2, n) of radius and height as drawn: the surface, ``undeformed`` and ``deformed``, and the ``wall``.
+
+    They go out to a radius in beta; beta^2/R of height is drawn as `heights` in beta.
+    """
     u_r, u_z = state.surface_displacement
     r = state.surface.radii
     own = _own_height(state, r)
@@ -133,7 +127,7 @@ def surfaces(state: State, reach: float, heights: float) -> Surfaces:
     shown = np.concatenate([[0.0], r[r < reach], [reach]])
     undeformed, deformed, wall = (np.stack([shown, heights * np.interp(shown, r, level)]) for level in levels)
     deformed[0] += np.interp(shown, r, u_r, left=0.0) / state.scene.sphere_radius
-    return Surfaces(undeformed, deformed, wall)
+    return {"undeformed": undeformed, "deformed": deformed, "wall": wall}
 
 
 def _own_height(state: State, radii: Array) -> Array:
@@ -153,8 +147,9 @@ COLOURS = "RdBu_r"
 OSMESA = ("libOSMesa.so", "libOSMesa.so.8", "libOSMesa.so.6")
 """What VTK draws with where it finds neither a display nor EGL."""
 
-BODY, WALL, UNDEFORMED, OUTLINE = "black", "#505050", "#009E73", "#606060"
-"""Colours of the lines along the cut."""
+OUTLINE = "#606060"
+LINES = {"undeformed": ("#009E73", 4), "deformed": ("black", 6), "wall": ("#505050", 6)}
+"""Colours and widths of the lines along the cut."""
 
 
 def solid_image(state: State, view: View, size: tuple[int, int]) -> Pixels:
@@ -243,15 +238,12 @@ def _in_view(plane: Any, view: View) -> Any:
 def _add_surfaces(pyvista: Any, plotter: Any, state: State, view: View) -> None:
     """The wall, translucent, and along the cut the lines of wall, body and undeformed body."""
     shown = surfaces(state, view.reach, view.heights)
-    wall = _turned(line_through(pyvista, in_plane(*shown.wall)))
+    wall = _turned(line_through(pyvista, in_plane(*shown["wall"])))
     plotter.add_mesh(wall, color="#a0a0a0", opacity=0.3, smooth_shading=True)
-    for line, look in (
-        (shown.undeformed, {"color": UNDEFORMED, "line_width": 4}),
-        (shown.deformed, {"color": BODY, "line_width": 6}),
-        (shown.wall, {"color": WALL, "line_width": 6}),
-    ):
+    for name, (colour, width) in LINES.items():
         for angle in (0.0, LOOK.open):
-            plotter.add_mesh(line_through(pyvista, in_plane(*line)).rotate_z(angle), lighting=False, **look)
+            line = line_through(pyvista, in_plane(*shown[name])).rotate_z(angle)
+            plotter.add_mesh(line, lighting=False, color=colour, line_width=width)
 
 
 def _turned(plane: Any) -> Any:

@@ -71,7 +71,7 @@ def _approach(frame):
 @pytest.mark.parametrize("name", ["jump_on", "jump_off", "pull_off", "zero_load"])
 def test_the_rigid_sphere_over_a_half_space_is_drawn_round(states, name):
     state, view = states[name], view_of(list(states.values()))
-    r, z = surfaces(state, view.reach, view.heights).wall[:, 1:-1]
+    r, z = surfaces(state, view.reach, view.heights)["wall"][:, 1:-1]
     rigid = r**2 / 2 + (1 - state.observables[APPROACH]) / state.scene.tabor
     assert z == pytest.approx(view.heights * rigid, abs=1e-6 * view.reach)
 
@@ -81,11 +81,11 @@ def test_a_wall_is_drawn_flat_and_its_sphere_flattened(sphere):
     state, view = states["zero_load"], view_of(list(states.values()))
     shown = surfaces(state, view.reach, view.heights)
     wall = view.heights * (1 - state.observables[APPROACH]) / 2.0
-    assert shown.wall[1, 1:] == pytest.approx(wall, abs=1e-6 * view.reach)
-    touching = shown.deformed[0] < 0.9 * state.observables[3]
+    assert shown["wall"][1, 1:] == pytest.approx(wall, abs=1e-6 * view.reach)
+    touching = shown["deformed"][0] < 0.9 * state.observables[3]
     spacing = view.heights / 2.0
-    assert np.all(np.abs(wall - shown.deformed[1, touching] - spacing) < 0.1 * spacing)
-    assert np.ptp(shown.undeformed[1, touching]) > 3 * spacing
+    assert np.all(np.abs(wall - shown["deformed"][1, touching] - spacing) < 0.1 * spacing)
+    assert np.ptp(shown["undeformed"][1, touching]) > 3 * spacing
 
 
 def test_the_section_meets_the_surface_with_the_laws_stress(states):
@@ -96,7 +96,7 @@ def test_the_section_meets_the_surface_with_the_laws_stress(states):
     highest = order[np.append(np.diff(np.round(r, 9)[order]) > 0, True)]
     highest = highest[r[highest] < view.reach]
     assert len(highest) > 30
-    line = CubicSpline(*surfaces(state, view.reach, view.heights).deformed[:, 1:])
+    line = CubicSpline(*surfaces(state, view.reach, view.heights)["deformed"][:, 1:])
     assert z[highest] == pytest.approx(line(r[highest]), abs=1e-4)
     pressure = CubicSpline(state.surface.radii, state.pressure)(r[highest])
     assert shown.stress[highest] == pytest.approx(-pressure, abs=0.02)
