@@ -17,15 +17,7 @@ from numpy.typing import NDArray
 
 from fem_adhesion.bodies.body import GripName
 from fem_adhesion.finite_sphere.bulk import bulk_compliance
-from fem_adhesion.finite_sphere.cases import (
-    APPROACH_SCALE,
-    CAUSES,
-    MODELS,
-    QUANTITIES,
-    Record,
-    SphereCase,
-    case_of,
-)
+from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CAUSES, MODELS, QUANTITIES, Record, SphereCase, case_of
 from halfspace.values import Array, Estimate, Valued
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]

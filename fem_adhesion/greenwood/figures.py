@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from fem_adhesion.common import style
 from fem_adhesion.common.numbers import digits, listed, plus_minus, told
 from fem_adhesion.common.page import data_text
-from fem_adhesion.common.style import BLUE, CHAIN, DASHED, DOTTED, GREEN, LONG, ORANGE, PINK, RED, SKY
+from fem_adhesion.common.style import BLUE, CHAIN, DASHED, DOTTED, GREEN, PINK, RED
 from fem_adhesion.greenwood.drawing import ELEMENTS, HALF_SPACE, Axis, Line, Look, Note, Plot
 from fem_adhesion.greenwood.study import Greenwood1997
 from halfspace import scaling
@@ -31,46 +32,26 @@ from halfspace.values import Array, Estimate
 
 Made = Callable[[Greenwood1997], Plot]
 Parts = Iterator[Line | Note | str]
-OF_TABOR = {
-    0.02: SKY, 0.05: SKY, 0.1: BLUE, 0.2: GREEN, 0.5: ORANGE, 0.7: SKY, 1.0: RED, 2.0: BLUE, 3.0: PINK, 5.0: GREEN,
-}  # fmt: skip
-"""A colour for each Tabor parameter; no figure shows two in the same look."""
-DASHES_OF_TABOR = dict(zip(OF_TABOR, ("-", "-", DASHED, CHAIN, LONG, DASHED, "-", DASHED, CHAIN, LONG), strict=True))
+DATA = tomllib.loads(data_text("greenwood", "figures.toml"))
+AXES, LOOKS, LETTERS = (DATA.pop(name) for name in ("axes", "looks", "letters"))
 MARKS: Look = {"linestyle": "none", "marker": "o", "markersize": 5, "markerfacecolor": "white"}
-CRITERIA: Mapping[str, tuple[str, Any]] = {
-    "Attard & Parker": (RED, DASHED),
-    "Pethica & Sutton": (ORANGE, CHAIN),
-    "App. C": (PINK, LONG),
-    "fit (4.5)": (BLUE, "-"),
-    "fit of App. C": (GREEN, "-"),
-}
-SPACINGS: Mapping[float, tuple[str, Any]] = {
-    0.2: (RED, CHAIN),
-    0.1: (ORANGE, DASHED),
-    0.05: (PINK, LONG),
-    0.025: (SKY, "-"),
-}
-STIFFNESSES = {math.inf: (RED, "-"), 3.0: (GREEN, DASHED), 1.0: (ORANGE, CHAIN)}
-STATES = {
-    "profiles": ((BLUE, "-"), (RED, DASHED)),
-    "more_profiles": ((SKY, "-"), (BLUE, DASHED), (GREEN, CHAIN), (PINK, LONG), (ORANGE, DOTTED)),
-}
-OFFSETS = {  # in points, of the letters in Fig. 2a
-    "A": (7.0, -5.0), "B": (-15.0, -6.0), "C": (-15.0, -4.0), "D": (-15.0, 2.0),
-    "A'": (9.0, -2.0), "B'": (6.0, -14.0), "C'": (7.0, -2.0), "D'": (-4.0, 8.0),
-}  # fmt: skip
+
+
+def look_of(kind: str, which: str | float, **more: Any) -> Look:
+    """Colour, dashes and width of a line."""
+    colour, dashes, *width = LOOKS[kind][which if isinstance(which, str) else f"{which:g}"]
+    values = getattr(style, colour, colour), getattr(style, dashes, dashes), *width
+    return {**dict(zip(("color", "linestyle", "linewidth"), values, strict=False)), **more}
 
 
 def figures() -> dict[str, tuple[str, Made]]:
     """Title of each figure, and what makes its plot, by the name of its files."""
-    read = tomllib.loads(data_text("greenwood", "figures.toml"))
-    axes = read.pop("axes")
-    return {stem: (figure["title"], partial(_plot, figure, axes)) for stem, figure in read.items()}
+    return {stem: (figure["title"], partial(_plot, figure)) for stem, figure in DATA.items()}
 
 
-def _plot(figure: Mapping[str, Any], axes: Mapping[str, Any], study: Greenwood1997) -> Plot:
+def _plot(figure: Mapping[str, Any], study: Greenwood1997) -> Plot:
     """Plot of an entry of the file."""
-    x, y = (Axis(**axes[name], limits=tuple(limits)) for name, *limits in (figure["x"], figure["y"]))
+    x, y = (Axis(**AXES[name], limits=tuple(limits)) for name, *limits in (figure["x"], figure["y"]))
     label, scale = figure.get("above", ("", ""))
     above = (label, float(getattr(scaling, scale).of(1.0))) if scale else None
     blank = Plot(x, y, title=figure.get("heading", ""), legend=figure.get("legend", "upper left"), above=above)
@@ -88,14 +69,14 @@ def _plot(figure: Mapping[str, Any], axes: Mapping[str, Any], study: Greenwood19
 def points(name: str, states: EquilibriumPath | States, tabor: float, plot: Plot, look: Look = MARKS) -> Line:
     """States of a curve, as markers unless they look otherwise."""
     (u, u_error), (v, v_error) = plot.x.values(states, tabor), plot.y.values(states, tabor)
-    return Line(name, tabor, u, v, {"color": OF_TABOR[tabor], **look}, u_error, v_error)
+    return Line(name, tabor, u, v, {"color": look_of("tabor", tabor)["color"], **look}, u_error, v_error)
 
 
 def half_space(study: Greenwood1997, plot: Plot, tabors: Sequence[float]) -> Parts:
     """Computed curves; stretches that are unstable under fixed grips are dotted."""
     for mu in tabors:
-        path, look = study.curves[mu], {"linestyle": DASHES_OF_TABOR[mu], "linewidth": 1.9}
-        yield replace(points(HALF_SPACE, path, mu, plot, look), dotted=~path.stable)
+        path = study.curves[mu]
+        yield replace(points(HALF_SPACE, path, mu, plot, look_of("tabor", mu, linewidth=1.9)), dotted=~path.stable)
 
 
 def elements(study: Greenwood1997, plot: Plot, tabors: Sequence[float]) -> Parts:
@@ -129,11 +110,11 @@ def folds(study: Greenwood1997, plot: Plot, tabor: float) -> Parts:
 def profiles(study: Greenwood1997, plot: Plot, which: str) -> Parts:
     """Gap or pressure of states along the radius."""
     mu, quantity = study.settings.winding_at, plot.y.quantity
-    for state, (colour, dashes) in zip(getattr(study, which), STATES[which], strict=False):
+    for number, state in enumerate(getattr(study, which)):
         values, errors = getattr(state, quantity), getattr(state, f"{quantity}_error")
         gap = round(state.central_gap, 9) + 0.0  # not -0
-        look = {"color": colour, "linestyle": dashes, "linewidth": 1.8}
-        yield Line(f"H(0) = {gap:g}", mu, state.radii, values, look, None, errors, label=f"$H(0) = {gap:.4g}$")
+        look, label = look_of(which, number), f"$H(0) = {gap:.4g}$"
+        yield Line(f"H(0) = {gap:g}", mu, state.radii, values, look, None, errors, label=label)
 
 
 # Jumps
@@ -155,7 +136,8 @@ def jumps(study: Greenwood1997, _: Plot, margins: Sequence[float]) -> Parts:
         )
         yield line
         yield from (
-            (letter, (at.approach, at.load), OFFSETS[letter]) for letter, at in zip(letters, jump.ends, strict=True)
+            (letter, (at.approach, at.load), tuple(LETTERS[letter]))
+            for letter, at in zip(letters, jump.ends, strict=True)
         )
         if primed:
             approach = np.array([line.x.min() - margins[0], line.x.max() + margins[0]])
@@ -169,8 +151,7 @@ def apparatus(study: Greenwood1997, _: Plot, stiffnesses: Sequence[float]) -> Pa
     """Jumps in apparatus of several stiffnesses."""
     for cycle in study.cycles:
         if (k := cycle.stiffness) in stiffnesses:
-            colour, dashes = STIFFNESSES[k]
-            look = {"color": colour, "linestyle": dashes, "linewidth": 1.7}
+            look = look_of("stiffness", k)
             name, label = f"apparatus {k:g} R dgamma/eps", rf"$k = {k:g}\,R\Delta\gamma/\epsilon$"
             if math.isinf(k):
                 name = label = "fixed grips"
@@ -201,37 +182,18 @@ def _forced(approach: Array, mu: float) -> Array:
     return np.where(approach <= 0, apart, dmt.force_load(np.maximum(approach, 0.0), mu))
 
 
-THEORIES: Mapping[str, tuple[Look, Callable[[Array, float], Mapping[str, Array]]]] = {
-    "Bradley": (
-        {"color": "black", "linestyle": DOTTED, "linewidth": 1.8},
-        lambda x, _: {"approach": x, "load": closed_forms.bradley_load(x)},
-    ),
-    "JKR": (
-        {"color": "black", "linestyle": DASHED, "linewidth": 1.5},
-        lambda a, mu: _by_radius(a, closed_forms.jkr_approach(a, mu), closed_forms.jkr_load(a)),
-    ),
-    "Hertz": (
-        {"color": "0.45", "linestyle": CHAIN, "linewidth": 1.5},
-        lambda a, mu: _by_radius(a, closed_forms.hertz_approach(a, mu), closed_forms.hertz_load(a)),
-    ),
-    "DMT-M": (
-        {"color": "black", "linestyle": LONG, "linewidth": 1.1},
-        lambda x, mu: {"approach": x, "load": dmt.maugis_load(x, mu)},
-    ),
-    "DMT force method": (
-        {"color": PINK, "linestyle": DASHED, "linewidth": 1.5},
-        lambda x, mu: {"approach": x, "load": _forced(x, mu)},
-    ),
-    "DMT thermodynamic": (
-        {"color": RED, "linestyle": CHAIN, "linewidth": 1.5},
-        lambda x, mu: {"approach": x, "load": dmt.thermodynamic_load(x, mu)},
-    ),
-    "Maugis-Dugdale": (
-        {"linewidth": 1.0},
-        lambda a, mu: _by_radius(a, MaugisDugdale.matched(mu).approach(a), MaugisDugdale.matched(mu).load(a)),
+THEORIES: Mapping[str, Callable[[Array, float], Mapping[str, Array]]] = {
+    "Bradley": lambda x, _: {"approach": x, "load": closed_forms.bradley_load(x)},
+    "JKR": lambda a, mu: _by_radius(a, closed_forms.jkr_approach(a, mu), closed_forms.jkr_load(a)),
+    "Hertz": lambda a, mu: _by_radius(a, closed_forms.hertz_approach(a, mu), closed_forms.hertz_load(a)),
+    "DMT-M": lambda x, mu: {"approach": x, "load": dmt.maugis_load(x, mu)},
+    "DMT force method": lambda x, mu: {"approach": x, "load": _forced(x, mu)},
+    "DMT thermodynamic": lambda x, mu: {"approach": x, "load": dmt.thermodynamic_load(x, mu)},
+    "Maugis-Dugdale": lambda a, mu: _by_radius(
+        a, MaugisDugdale.matched(mu).approach(a), MaugisDugdale.matched(mu).load(a)
     ),
 }
-"""How the curve of a theory looks, and its numbers, by approaches or radii and the Tabor parameter."""
+"""Numbers of the curve of a theory, by approaches or radii and the Tabor parameter."""
 
 
 def theory(
@@ -247,11 +209,11 @@ def theory(
     coloured: bool = False,
 ) -> Parts:
     """Curve of a closed theory; of one Tabor parameter `tabor` if the legend says so, and in its colour if asked."""
-    usual, numbers = THEORIES[name]
     mu = tabor or mu
-    found, colour = numbers(np.linspace(*over), mu), {"color": OF_TABOR[mu]} if coloured else {}
+    found = THEORIES[name](np.linspace(*over), mu)
     x, y = (found[axis.quantity] / axis.size(mu) for axis in (plot.x, plot.y))
-    yield Line(name, tabor, x, y, {**usual, **colour, **(look or {})}, label=label)
+    colour = {"color": look_of("tabor", mu)["color"]} if coloured else {}
+    yield Line(name, tabor, x, y, look_of("theory", name, **colour, **(look or {})), label=label)
 
 
 def carpick(study: Greenwood1997, _: Plot, tabors: Sequence[float]) -> Parts:
@@ -260,9 +222,7 @@ def carpick(study: Greenwood1997, _: Plot, tabors: Sequence[float]) -> Parts:
     for mu in tabors:
         maugis = scaling.MAUGIS.of(mu)
         load = np.linspace(float(carpick_pull_off(maugis)), 5, 400)
-        yield Line(
-            "Carpick et al.", mu, load, carpick_radius(load, maugis), {"color": OF_TABOR[mu], "linestyle": DOTTED}
-        )
+        yield Line("Carpick et al.", mu, load, carpick_radius(load, maugis), look_of("tabor", mu, linestyle=DOTTED))
         radius = study.curves[mu].events["zero_load"].contact_radius
         off.append(f"{100 * (float(carpick_radius(0.0, maugis)) / radius - 1):+.1f} % at mu = {mu:g}")
     yield f"At zero load the radius of Carpick et al. is off the solution's by {listed(off)}."
@@ -291,7 +251,7 @@ def pull_off_theories(study: Greenwood1997, _: Plot, attard: Sequence[tuple[floa
     look: Look = {"color": RED, "linestyle": DASHED, "marker": "s"}
     yield Line("Attard & Parker, the two values quoted", None, mu, np.pi * force, look)
     for name, load in (("Bradley", closed_forms.BRADLEY_PULL_OFF), ("JKR", closed_forms.JKR_PULL_OFF)):
-        yield Line(name, None, tabor, np.full_like(tabor, -load), {**THEORIES[name][0], "linewidth": 1.0})
+        yield Line(name, None, tabor, np.full_like(tabor, -load), look_of("theory", name, linewidth=1.0))
 
 
 def criteria(study: Greenwood1997, _: Plot, quantity: str) -> Parts:
@@ -308,19 +268,14 @@ def criteria(study: Greenwood1997, _: Plot, quantity: str) -> Parts:
     tabor = np.geomspace(0.72, max(mu, default=1.0), 200)
     for one in study.criteria:
         if one.predict and one.of_approach == (quantity == "approach"):
-            colour, dashes = CRITERIA[one.name]
-            yield Line(one.name, None, tabor, scaled(one.predict(tabor), tabor), {"color": colour, "linestyle": dashes})
+            yield Line(one.name, None, tabor, scaled(one.predict(tabor), tabor), look_of("criterion", one.name))
 
 
 def coarse(study: Greenwood1997, _: Plot, which: str) -> Parts:
     """What uniform triangles too wide give, wrong on purpose, so without an error: pull-off forces, or curves."""
 
     def line(spacing: float, tabor: float | None, x: Array, y: Array) -> Line:
-        colour, dashes = SPACINGS[spacing]
-        look, label = (
-            {"color": colour, "linestyle": dashes, "linewidth": 1.4},
-            rf"uniform triangles, ${spacing:g}\,\beta$",
-        )
+        look, label = look_of("spacing", spacing), rf"uniform triangles, ${spacing:g}\,\beta$"
         return Line(f"uniform triangles {spacing:g} beta", tabor, x, y, look, label=label)
 
     if which == "rises":

@@ -188,9 +188,7 @@ _HEXAHEDRON_OF_QUAD9 = _layered(
     *((0, range(4)), (2, range(4)), (0, range(4, 8)), (2, range(4, 8)), (1, range(4))),
     *((1, (7, 5, 4, 6)), (0, (8,)), (2, (8,)), (1, (8,))),
 )
-_WEDGE_OF_TRIANGLE6 = _layered(
-    *((0, range(3)), (2, range(3)), (0, range(3, 6)), (2, range(3, 6)), (1, range(6))),
-)
+_WEDGE_OF_TRIANGLE6 = _layered(*((0, range(3)), (2, range(3)), (0, range(3, 6)), (2, range(3, 6)), (1, range(6))))
 # A quadrilateral whose side from its first to its last corner is on the axis: its rows (3, 6, 2), (0, 4, 1) and between
 # them (7, 8, 5), from the axis outwards, are triangles, and the axis points to the top.
 _WEDGE_ON_AXIS = _layered(
