@@ -6,7 +6,8 @@ f are in widths of the spike of tension at the contact edge, extents U and sizes
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
@@ -19,6 +20,7 @@ import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.common import relaxation
+from fem_adhesion.common.page import data_text
 from fem_adhesion.common.relaxation import Relaxed
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import FarField, clamped, point_load
@@ -123,50 +125,6 @@ def widest(tabor: float) -> float:
 MOST_NODES = 3000  # of a dense operator: 70 MB, and as much again for each factorisation
 
 
-def halfspace_methods() -> list[Method]:
-    """Every half-space method: iterations of 1997, grids that do not follow the contact, the adaptive solver.
-
-    The iterations run on graded triangles, which need the fewest nodes, and give the pull-off load only.
-    """
-    method = partial(Method, "half-space")
-    relaxed = [(0.2, 5.0, 1.4), (0.1, 7.0, 1.3), (0.07, 9.0, 1.2), (0.05, 12.0, 1.15), (0.025, 24.0, 1.08)]
-    uniform = [(0.2, 6.0), (0.1, 8.0), (0.07, 9.5), (0.05, 11.0), (0.035, 13.0), (0.025, 16.0)]
-    graded = [(0.2, 8.0, 1.4), (0.1, 10.0, 1.2), (0.05, 20.0, 1.1), (0.025, 40.0, 1.05), (0.0125, 80.0, 1.025)]
-    panels = [(4, 8.0), (5, 12.0), (6, 20.0), (8, 50.0), (10, 120.0), (12, 300.0), (14, 800.0)]
-    simple, local = (ladder(partial(_relaxed, relax), "f U growth", relaxed) for relax in (_simple, _greenwood))
-    bands, triangles = (partial(_on_grid, make) for make in (compliance.bands, compliance.triangles))
-    return [
-        method("simple relaxation", simple, 4, may_diverge=True),
-        method("Greenwood's iteration", local[:-1], 2, may_diverge=True),  # on the finest the sweeps run out
-        method("uniform bands", ladder(bands, "f U", uniform), 4),
-        method("uniform triangles", ladder(triangles, "f U", uniform), 4),
-        method("graded triangles", ladder(triangles, "f U growth", graded), 4),
-        method("panels, fixed grid", ladder(_on_panels, "nodes U", panels), 4),
-        method("adaptive", adaptive(lambda tabor, rtol: halfspace.trace(tabor, rtol=rtol), range(2, 10)), 5),
-    ]
-
-
-def ladder(solve: Callable[..., Solved], names: str, rungs: Sequence[tuple[Any, ...]]) -> list[Step]:
-    """Rungs of settings, each solved by `solve(tabor, *settings)`, named by those of the settings that have names."""
-
-    def step(settings: tuple[Any, ...]) -> Step:
-        named = zip(names.split(), settings, strict=False)
-        told = [f"{name}={value:.0e}" if name == "rtol" else f"{name}={value:g}" for name, value in named]
-        return Step(" ".join(told), lambda tabor: solve(tabor, *settings))
-
-    return [step(settings) for settings in rungs]
-
-
-def adaptive(trace: Callable[..., EquilibriumPath], digits: Iterable[int]) -> list[Step]:
-    """Rungs of a solver with error control."""
-
-    def solve(tabor: float, rtol: float) -> Solved:
-        path = trace(tabor, rtol=rtol)
-        return path.unknowns, {name: estimate.value for name, estimate in estimates(path).items()}
-
-    return ladder(solve, "rtol", [(10.0**-k,) for k in digits])
-
-
 def _graded(tabor: float, f: float, U: float, growth: float, fine_radius: float | None = None) -> Array:
     fine = widest(tabor) if fine_radius is None else fine_radius
     finest, extent = f * Scales(tabor).spike_width, fine + U * unit(tabor)
@@ -238,32 +196,12 @@ def pull_off_by_sweep(problem: ContactProblem, relax: Relaxation) -> float:
     return float(minimize_scalar(load, bounds=bounds, method="bounded", options={"xatol": 1e-2 * abs(step)}).fun)
 
 
+def _adaptive(path: EquilibriumPath) -> Solved:
+    """What a solver with error control finds."""
+    return path.unknowns, {name: estimate.value for name, estimate in estimates(path).items()}
+
+
 # Finite elements
-
-
-def element_methods() -> list[Method]:
-    """Every finite-element method: triangles and quadrilaterals on graded meshes, and degrees that rise.
-
-    Degrees rise with the resolution, adaptively, and on fixed meshes for the other far field and solver.
-    """
-    method, held = partial(Method, "finite elements"), partial(_condensed, far_field=clamped)
-    P1, P2, P3 = (partial(_on_disc, element) for element in (ElementTriP1(), ElementTriP2(), ElementTriP3()))
-    tri = [(0.6, 16.0), (0.4, 24.0), (0.28, 34.0), (0.2, 48.0), (0.14, 68.0), (0.1, 96.0)]
-    quad = [(0.6, 16.0, 2.0), (0.4, 24.0, 1.7), (0.28, 34.0, 1.45), (0.2, 48.0, 1.3), (0.14, 68.0, 1.2)]
-    boxes = [(4, 0.8, 1e2, 2.5), (5, 0.8, 1e3, 2.5), (6, 0.8, 1e4, 2.5), (7, 0.8, 1e5, 2.5), (8, 0.8, 1e6, 2.5)]
-    small = [(2, 0.8, 20.0, 2.5), (3, 0.8, 40.0, 2.5), (4, 0.8, 80.0, 2.5)]
-    return [
-        method("P1", ladder(P1, "f L", tri), 4),
-        method("P2", ladder(P2, "f L", tri), 3),
-        method("P3", ladder(P3, "f L", tri), 3),
-        method("Q2", ladder(_on_block, "p f L", [(2, *s) for s in quad]), 4),
-        method("P1", ladder(partial(P1, solve=held), "f L", tri), 4, "clamped"),
-        method("P2", ladder(partial(P2, solve=held), "f L", tri), 3, "clamped"),
-        method("P2", ladder(partial(P2, solve=_monolithic), "f L", tri[:3]), 1, "monolithic"),
-        method("hp", adaptive(trace_elements, range(3, 9)), 4),  # looser tolerances choose the same degree
-        method("hp", ladder(partial(_on_block, solve=held), "p f L", boxes), 3, "clamped"),
-        method("hp", ladder(partial(_on_block, solve=_monolithic), "p f L", small), 2, "monolithic"),
-    ]
 
 
 Solver = Callable[[Space, float], Solved]
@@ -289,3 +227,47 @@ def _on_block(tabor: float, p: int, f: float, L: float, growth: float, solve: So
     extent = max(L * unit(tabor), 2 * widest(tabor))
     mesh = block_grid(f * Scales(tabor).spike_width, widest(tabor), extent, growth=growth)
     return solve(Space(mesh, ElementQuad2() if p == 2 else ElementQuadP(p)), tabor)
+
+
+ELEMENTS = {"P1": ElementTriP1(), "P2": ElementTriP2(), "P3": ElementTriP3()}
+SOLVERS: Mapping[str, Solver] = {
+    "": _condensed,
+    "clamped": partial(_condensed, far_field=clamped),
+    "monolithic": _monolithic,
+}
+HALF_SPACE: Mapping[str, Callable[..., Solved]] = {
+    "simple relaxation": partial(_relaxed, _simple),
+    "Greenwood's iteration": partial(_relaxed, _greenwood),
+    "uniform bands": partial(_on_grid, compliance.bands),
+    "uniform triangles": partial(_on_grid, compliance.triangles),
+    "graded triangles": partial(_on_grid, compliance.triangles),
+    "panels, fixed grid": _on_panels,
+    "adaptive": lambda tabor, rtol: _adaptive(halfspace.trace(tabor, rtol=rtol)),
+}
+
+
+def _solver(family: Family, basis: str, variant: Variant) -> Callable[..., Solved]:
+    """What solves a rung of a method, given the Tabor parameter and its settings."""
+    if family == "half-space":
+        return HALF_SPACE[basis]
+    if basis in ELEMENTS:
+        return partial(_on_disc, ELEMENTS[basis], solve=SOLVERS[variant])
+    if (basis, variant) == ("hp", ""):
+        return lambda tabor, rtol: _adaptive(trace_elements(tabor, rtol))
+    return partial(_on_block, solve=SOLVERS[variant])
+
+
+def all_methods() -> list[Method]:
+    """Every method of ``data/methods.toml``, in its order."""
+
+    def step(solve: Callable[..., Solved], names: str, settings: Sequence[float]) -> Step:
+        named = zip(names.split(), settings, strict=False)
+        told = [f"{name}={value:.0e}" if name == "rtol" else f"{name}={value:g}" for name, value in named]
+        return Step(" ".join(told), lambda tabor: solve(tabor, *settings))
+
+    methods = []
+    for row in tomllib.loads(data_text("speed", "methods.toml"))["method"]:
+        names, rungs = row.pop("settings"), row.pop("rungs")
+        solve = _solver(row["family"], row["basis"], row.get("variant", ""))
+        methods.append(Method(steps=[step(solve, names, settings) for settings in rungs], **row))
+    return methods

@@ -34,9 +34,8 @@ from fem_adhesion.speed.methods import (
     Family,
     Method,
     Step,
-    element_methods,
+    all_methods,
     estimates,
-    halfspace_methods,
     trace_elements,
 )
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
@@ -264,7 +263,7 @@ def measure(
     InputError if tabor is out of range, NotConverged if a truth is not found.
     """
     require_tabor(tabor)
-    chosen = tuple([*halfspace_methods(), *element_methods()] if methods is None else methods)
+    chosen = tuple(all_methods() if methods is None else methods)
     truths = find_truths(tabor)
     yardstick = time_yardstick()
     rungs: list[Timing] = []

@@ -17,7 +17,7 @@ from fem_adhesion.common.page import markdown
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
-from fem_adhesion.speed.methods import QUANTITIES, Method, Step, element_methods, halfspace_methods
+from fem_adhesion.speed.methods import QUANTITIES, Method, Step, all_methods
 from fem_adhesion.speed.page import read_earlier
 from fem_adhesion.speed.study import (
     GROWTHS,
@@ -35,7 +35,7 @@ from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.values import Estimate
 
-METHODS = [*halfspace_methods(), *element_methods()]
+METHODS = all_methods()
 PREFIX = {"half-space": "", "finite elements": "FE "}
 FILES = {"speed.csv", "growth.csv", "captions.csv", "speed.md", "csv-metadata.json"} | {
     f"{q}.{suffix}" for q in QUANTITIES for suffix in ("svg", "png")
