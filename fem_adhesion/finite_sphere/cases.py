@@ -1,4 +1,4 @@
-"""What one case of the study of the finite sphere computes, which difference of two isolates which cause, and records.
+"""What one case of the study of the finite sphere computes, and how it is recorded.
 
 Between a paraboloid on a half-space and a true elastic sphere lie several assumptions. A case is a contact under one
 set of them; two that differ in one assumption tell what it does. Cases and records are plain data for the disk, too.
@@ -150,15 +150,6 @@ class Model:
     check: Callable[[SphereCase], None] = lambda _: None
 
 
-@dataclass(frozen=True)
-class Cause:
-    """An assumption in words, and the keys of `MODELS`: the model that drops it, less the baseline that makes it."""
-
-    model: str
-    baseline: str
-    meaning: str
-
-
 def compute(case: SphereCase) -> Record:
     """Solve a case; one that the solver refuses or does not solve is recorded with the kind of its error and reason.
 
@@ -279,17 +270,6 @@ MODELS: Mapping[str, Model] = {
     },
     "first_jump": Model(_first_jump, ("radius_ratio", "poisson"), "sliding"),
     "first_jump_half_space": Model(_first_jump_half_space, ()),
-}
-
-CAUSES = {
-    "profile": Cause("true_profile", "half_space", "sphere for paraboloid, on the half-space"),
-    "body": Cause("finite_body", "half_space", "hemisphere for half-space, under the paraboloid"),
-    "all": Cause("sphere", "half_space", "hemisphere on a sliding mid-plane, with the sphere's profile"),
-    "grip": Cause("bonded", "sphere", "bonded for sliding mid-plane"),
-    "traction": Cause("surface_traction", "sphere", "surface law per true for per projected area"),
-    "strain": Cause("finite_strain", "sphere", "neo-Hookean for linear, the attracted matter conserved"),
-    "normal": Cause("finite_strain_normal", "finite_strain", "model uncertainty: all per deformed area"),
-    "reference": Cause("finite_strain_reference", "finite_strain", "model uncertainty: all per undeformed area"),
 }
 
 

@@ -5,7 +5,7 @@ Each sentence of a caption is found by a test of the numbers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from fem_adhesion.finite_sphere.chart import no_sphere
 from fem_adhesion.finite_sphere.fit import RIGID_PULL_OFF, SOFT_PULL_OFF, fit, leading_terms
 from fem_adhesion.finite_sphere.study import Study
 from fem_adhesion.finite_sphere.table import (
+    CAUSES,
     DeviationRow,
     Samples,
     jumping_tabors,
@@ -33,14 +34,7 @@ from halfspace.values import Array
 STRETCH = r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
 SIZE = "|relative deviation from the half-space|"
 SMALLEST = 1e-7  # least deviation that is shown
-CAUSES: Mapping[str, tuple[str, str, str]] = {
-    "all": ("black", "o", "all: elastic sphere, sliding mid-plane"),
-    "profile": (style.BLUE, "s", "profile: sphere for paraboloid"),
-    "body": (style.RED, "^", "body: hemisphere for half-space"),
-    "grip": (style.GREEN, "D", "grip: bonded for sliding"),
-    "traction": (style.PINK, "v", "traction: true for projected area"),
-    "strain": (style.ORANGE, "P", "strain: neo-Hookean for linear"),
-}
+DRAWN = ("all", *(name for name, cause in CAUSES.items() if cause.label and name != "all"))
 
 
 def _draw(study: Study) -> Figure:
@@ -48,7 +42,7 @@ def _draw(study: Study) -> Figure:
     tabors, poisson = panel_tabors(rows), study.poisson
     figure, panels = style.panels(max(len(tabors), 2), height=6.4)
     for axes, tabor in zip(panels, tabors, strict=False):
-        for cause in CAUSES:
+        for cause in DRAWN:
             _cause(axes, rows, cause, tabor, poisson)
         axes.set_title(rf"$\mu = {tabor:g}$")
         _theories(axes, tabor)
@@ -80,9 +74,10 @@ def _plain(axis: Any, write: Callable[[float], str] = "{:g}".format) -> None:
 
 def _cause(axes: Any, rows: Sequence[DeviationRow], cause: str, tabor: float, poisson: float | None) -> None:
     data = _pull_off(rows, cause, poisson, tabor=tabor)
-    colour, marker, label = CAUSES[cause]
+    how = CAUSES[cause]
+    colour = getattr(style, how.colour, how.colour)
     size = 8.0 if cause == "all" else 5.5  # the whole shows round its largest part
-    signed(axes, data, color=colour, marker=marker, markersize=size, label=label)
+    signed(axes, data, color=colour, marker=how.marker, markersize=size, label=how.label)
     try:
         found = fit(data, terms := leading_terms(cause, "pull_off_load", one_tabor=True))
     except InputError:
@@ -130,8 +125,9 @@ def _caption(study: Study) -> Iterator[str]:
             yield f"At mu = {tabor:g} the larger part is {', and '.join(ends)}."
     changes = (("grip",), "all"), (("strain",), "all"), (("reference", "normal"), "all"), (("traction",), "profile")
     for (causes, whole), name in zip(changes, ("grip", "strain", "uncertain", "traction"), strict=True):
-        ratios = [_ratios(_pull_off(rows, c, poisson), _pull_off(rows, whole, poisson)) for c in causes]
-        shares = 100 * np.concatenate(ratios)
+        parts = [_pull_off(rows, cause, poisson).significant for cause in causes]
+        larger = _pull_off(rows, whole, poisson).significant
+        shares = 100 * np.concatenate([_over(part, part.deviation, larger) for part in parts])
         if shares.size:
             shown = span(shares if name == "traction" else np.abs(shares))
             yield said("finite_sphere", "causes", name, span=shown, points=counted(shares.size, "point"))
@@ -140,12 +136,6 @@ def _caption(study: Study) -> Iterator[str]:
 def _pull_off(rows: Sequence[DeviationRow], cause: str, poisson: float | None, **at: float) -> Samples:
     """Deviations of the pull-off, those by the profile whatever Poisson's ratio."""
     return samples(rows, cause, "pull_off_load", poisson=None if cause == "profile" else poisson, **at)
-
-
-def _ratios(part: Samples, whole: Samples) -> Array:
-    """A deviation over another, where both exceed their errors."""
-    part = part.significant
-    return _over(part, part.deviation, whole.significant)
 
 
 def _over(points: Samples, values: Array, whole: Samples) -> Array:

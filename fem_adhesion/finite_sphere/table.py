@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_adhesion.bodies.body import GripName
+from fem_adhesion.common.page import data_rows
 from fem_adhesion.finite_sphere.bulk import bulk_compliance
-from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CAUSES, MODELS, QUANTITIES, Record, SphereCase, case_of
+from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, MODELS, QUANTITIES, Record, SphereCase, case_of
 from halfspace.values import Array, Estimate, Valued
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]
@@ -30,11 +31,29 @@ UNITS = QUANTITIES | dict.fromkeys(LESS_BULK, "eps")
 
 
 @dataclass(frozen=True)
+class Cause:
+    """An assumption in words, and the keys of `MODELS`: the model that drops it, less the baseline that makes it.
+
+    A cause that is drawn has a colour, a marker and words of the legend.
+    """
+
+    model: str
+    baseline: str
+    meaning: str
+    colour: str
+    marker: str
+    label: str
+
+
+CAUSES = {row.pop("cause"): Cause(**row) for row in data_rows("finite_sphere", "causes.csv")}
+
+
+@dataclass(frozen=True)
 class DeviationRow:
     """One quantity of one case beside the case without its cause.
 
     Inputs are None where the case does not depend on them, as it always does on the first. Cause and quantity are keys
-    of `fem_adhesion.finite_sphere.cases.CAUSES` and of `UNITS`, the unit that of values and errors. `value` is with the
+    of `CAUSES` and of `UNITS`, the unit that of values and errors. `value` is with the
     cause, `baseline` without it, `half_space` on the half-space under a paraboloid; the deviation is (value -
     baseline)/half_space, of an approach over the scale of those of the half-space's curve in the place of its value,
     see `halfspace.equilibrium.events.approach_scale`; its error is bounded by those of all three.

@@ -12,15 +12,14 @@ from whole_sphere import sphere_operator
 
 from fem_adhesion.common import style
 from fem_adhesion.finite_sphere import chart as chart_module
-from fem_adhesion.finite_sphere import figures
 from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.bulk import bulk_compliance, excess_compliance
-from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CAUSES, CRITICAL, MODELS, Record, case_of
+from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CRITICAL, MODELS, Record, case_of
 from fem_adhesion.finite_sphere.fit import FIXED_GRIPS, leading_terms
 from fem_adhesion.finite_sphere.page import SHOWN
 from fem_adhesion.finite_sphere.plane import Field, contour, field_of, safe_from
 from fem_adhesion.finite_sphere.study import Study, plan
-from fem_adhesion.finite_sphere.table import borders, rows, write_tables
+from fem_adhesion.finite_sphere.table import CAUSES, borders, rows, write_tables
 from halfspace.elastic import grid
 from halfspace.values import Estimate
 
@@ -292,7 +291,7 @@ def test_the_axes_of_the_causes_say_what_is_drawn(distinct):
         assert x == r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
         assert y in ("|relative deviation from the half-space|", "")
         for cause in ("all", "profile", "body", "grip", "traction", "strain"):
-            label = figures.CAUSES[cause][2]
+            label = CAUSES[cause].label
             assert label.startswith(f"{cause}: ")
             at = sorted(np.transpose(line_of(panel, label)).tolist(), reverse=True)
             wanted = [
