@@ -84,7 +84,6 @@ class Fit:
 
     coefficients: Mapping[str, Estimate]
     holds_to: float
-    tolerance: float
     points: int
     worst: float
 
@@ -154,7 +153,7 @@ def fit(data: Samples, terms: Mapping[str, Term], *, tolerance: float = TOLERANC
         if np.all(np.abs(residual) <= allowed):
             found = _with_bias(found, part.where(part.stretch <= limit / 2), functions, tolerance)
             coefficients = dict(zip(terms, found, strict=True))
-            return Fit(coefficients, float(limit), tolerance, part.tabor.size, float(np.abs(residual).max()))
+            return Fit(coefficients, float(limit), part.tabor.size, float(np.abs(residual).max()))
     raise InputError(
         f"{data.tabor.size} points leave no {2 * len(terms)} or more within tolerance = {tolerance:g} of a fit; "
         "give more points of small tabor/radius_ratio"

@@ -32,13 +32,6 @@ EXTENT = 6.0  # radius of uniform grids in beta: less than 0.6 % of the pull-off
 NODES = 200  # of the iterations' uniform triangles, to EXTENT, or to EXTENT/sqrt(mu) below mu = 1
 
 
-class Unguarded(ContactProblem):
-    """A contact problem that does not refuse a grid too coarse for the spike: wrong on purpose."""
-
-    def require_resolution(self, x: Array) -> None:
-        """Accept every state."""
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Ripple(Valued):
     """The curve near pull-off on a uniform grid of a spacing in beta: approach (eps) and load (R dgamma), both (n,)."""
@@ -90,7 +83,9 @@ def ripple(
     prescribed, which goes on falling where approach and load ripple: from a window in beta above that at pull-off to as
     far below, in a number of steps to a spacing. NotConverged if the coarse grid has no state near the resolved one.
     """
-    problem = Unguarded(body(grid.uniform(EXTENT, spacing)), path.tabor)
+    problem = ContactProblem(
+        body(grid.uniform(EXTENT, spacing)), path.tabor
+    )  # too coarse, which no one asks of it here
     centre = path.events["pull_off"].contact_radius
     radii = np.arange(centre + window, centre - window, -spacing / steps)
     resolved = path.segments[-1]

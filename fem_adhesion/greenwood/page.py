@@ -18,7 +18,7 @@ from fem_adhesion.greenwood.facts import PullOff
 from fem_adhesion.greenwood.figures import figures
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
 from fem_adhesion.greenwood.study import Greenwood1997
-from fem_adhesion.greenwood.tables import Printed
+from fem_adhesion.greenwood.tables import Printed, is_rounded
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event
 from halfspace.theories.criteria import fundamental_criterion
@@ -99,7 +99,8 @@ def _printed(stem: str, see: str, column: str, entries: Sequence[Printed], **num
         ("relative deviation", "note"): lambda p: (f"{p.deviation:+.1e}", p.note),
     }
     known = [entry for entry in entries if math.isfinite(entry.deviation)]
-    agreement = [f"{sum(p.to_last_digit for p in entries)} of {len(entries)} values agree to their last printed digit."]
+    right = sum(is_rounded(p.printed, p.computed) for p in entries)
+    agreement = [f"{right} of {len(entries)} values agree to their last printed digit."]
     if known:
         worst = max(known, key=lambda entry: abs(entry.deviation))
         off = f"{abs(worst.deviation):.1e}, in {worst.row} at {worst.column:g}"

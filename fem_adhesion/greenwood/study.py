@@ -88,7 +88,7 @@ class Greenwood1997(Facts):
         """What failed that should not have, a sentence each."""
         printed = self.tables
         for entry in (*printed.table_1, *printed.table_2, *printed.profile_checks):
-            if not entry.credible:
+            if not abs(entry.deviation) <= tables.CREDIBLE:
                 yield f"{entry.row} at {entry.column:g}: {entry.computed.value:.6g}, printed {entry.printed}"
         for p in self.pull_offs:
             if p.finite_element and not p.agree:

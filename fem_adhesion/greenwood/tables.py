@@ -50,16 +50,6 @@ class Printed:
         """Computed less printed value, relative."""
         return (self.computed.value - float(self.printed)) / (self.scale or float(self.printed))
 
-    @property
-    def to_last_digit(self) -> bool:
-        """Whether the printed value is the computed one rounded."""
-        return is_rounded(self.printed, self.computed)
-
-    @property
-    def credible(self) -> bool:
-        """Whether the two are as near as a hand and a computer of 1997 let expect."""
-        return abs(self.deviation) <= CREDIBLE
-
 
 @dataclass(frozen=True)
 class Tables:

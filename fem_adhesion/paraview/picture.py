@@ -7,9 +7,9 @@ flat as its wall where they touch, and the rigid sphere as round as the dent it 
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from ctypes.util import find_library
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
@@ -144,9 +144,7 @@ Pixels = NDArray[np.uint8]
 COLOURS = "RdBu_r"
 """Blue in compression, red in tension: told apart by every kind of colour-blind eye, and white where there is none."""
 
-OSMESA = ("libOSMesa.so", "libOSMesa.so.8", "libOSMesa.so.6")
-"""What VTK draws with where it finds neither a display nor EGL."""
-
+OSMESA = "OSMesa"  # library that VTK draws with where it finds neither a display nor EGL
 OUTLINE = "#606060"
 LINES = {"undeformed": ("#009E73", 4), "deformed": ("black", 6), "wall": ("#505050", 6)}
 """Colours and widths of the lines along the cut."""
@@ -179,19 +177,10 @@ def require_drawing() -> Any:
     import_module("vtkmodules.vtkRenderingOpenGL2")  # until then VTK's window is an abstract one
     with _quiet():
         last_resort = vtkRenderWindow().GetClassName() == "vtkOSOpenGLRenderWindow"
-    if last_resort and not any(map(_is_installed, OSMESA)):
-        raise InputError(
-            "OpenGL is not installed, which draws off-screen pictures; apt-get install libegl1 libgl1-mesa-dri"
-        )
+    if last_resort and find_library(OSMESA) is None:
+        remedy = "apt-get install libegl1 libgl1-mesa-dri"
+        raise InputError(f"OpenGL is not installed, which draws off-screen pictures; {remedy}")
     return pyvista
-
-
-def _is_installed(library: str) -> bool:
-    try:
-        ctypes.CDLL(library)
-    except OSError:
-        return False
-    return True
 
 
 @contextmanager

@@ -35,13 +35,6 @@ ROUNDING = 1 + 1e-12  # leeway for radii that are equal but for rounding
 
 
 @dataclass(frozen=True)
-class CohesiveState(ContactState):
-    """A state with the radius c of its cohesive zone (beta); the contact radius is nan before contact."""
-
-    cohesive_radius: float
-
-
-@dataclass(frozen=True)
 class MaugisDugdale:
     """The theory at one lambda.
 
@@ -102,18 +95,18 @@ class MaugisDugdale:
         b = 2 * self.tension * (1 - 2 / np.pi)
         return float(2 / self.tension / (b + np.sqrt(b**2 + 2 / self.tension)))
 
-    def pull_off(self) -> CohesiveState:
+    def pull_off(self) -> ContactState:
         """Where contact is lost under dead load: the least load, a (z/m + m t) = 2 s (1 - 1/m + m t^2)."""
         return self._turning(dead_load=True)
 
-    def jump_on(self) -> CohesiveState:
+    def jump_on(self) -> ContactState:
         """Where the surfaces jump on, under fixed grips and dead load alike: as soon as the attraction reaches across.
 
         The tension sets in with its full strength, over a disc that grows while the surfaces are drawn apart.
         """
         return self._separated(0.0)
 
-    def jump_off(self) -> CohesiveState:
+    def jump_off(self) -> ContactState:
         """Where the surfaces part under fixed grips: the least approach, a (z/m + m t) = 2 s (1 - 1/m).
 
         Below lambda = 0.938 contact is lost before, and the fold is that of the cohesive disc, c = 4 s/pi.
@@ -123,7 +116,7 @@ class MaugisDugdale:
             return self._separated(fold)
         return self._turning(dead_load=False)
 
-    def _turning(self, *, dead_load: bool) -> CohesiveState:
+    def _turning(self, *, dead_load: bool) -> ContactState:
         """State of contact at which load or approach is least: the equations of `pull_off` and `jump_off`."""
         s = self.tension
 
@@ -136,10 +129,10 @@ class MaugisDugdale:
         ends = float(np.log(1e-3 / (1 + s))), float(np.log(1e12 * (1 + s**-1.5)))
         z = np.exp(root(excess, *ends, "the cohesive zone; take a parameter nearer 1", xtol=1e-14))
         a = self._radius(z)
-        return CohesiveState(float(self._approach(a, z)), float(self._load(a, z)), float(a), float(a * np.hypot(1, z)))
+        return ContactState(float(self._approach(a, z)), float(self._load(a, z)), float(a))
 
-    def _separated(self, c: float) -> CohesiveState:
-        return CohesiveState(float(self.separated_approach(c)), float(self.separated_load(c)), float("nan"), c)
+    def _separated(self, c: float) -> ContactState:
+        return ContactState(float(self.separated_approach(c)), float(self.separated_load(c)), float("nan"))
 
     def _before_contact(self, cohesive_radius: ArrayLike) -> Array:
         c = np.asarray(cohesive_radius, float)

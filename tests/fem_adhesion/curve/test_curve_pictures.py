@@ -201,7 +201,7 @@ def test_an_event_that_the_curve_has_not_is_refused(tmp_path):
 
 def test_a_machine_that_cannot_draw_is_told_what_to_install(monkeypatch):
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
-    monkeypatch.setattr(solid_view, "OSMESA", ("libOfNoName.so",))
+    monkeypatch.setattr(solid_view, "OSMESA", "OfNoName")
     with pytest.raises(ValueError, match="apt-get install libegl1 libgl1-mesa-dri"):
         solid_view.require_drawing()
 
