@@ -114,7 +114,8 @@ def _midways(values: Array) -> Array:
 def _begun(borders: Sequence[Record], poisson: float | None) -> list[tuple[float, Estimate]]:
     """R/eps, ascending and infinite of the half-space, and Tabor parameters from which on they jump."""
     found = {border.case: border.values.get(CRITICAL) for border in borders if border.case.poisson in (None, poisson)}
-    return sorted(((case.radius_ratio or np.inf), tabor) for case, tabor in found.items() if tabor)
+    begun = [(case.radius_ratio or np.inf, tabor) for case, tabor in found.items() if tabor]
+    return sorted(begun, key=lambda pair: pair[0])
 
 
 def _no_jump(axes: Any, begun: Sequence[tuple[float, Estimate]]) -> None:
