@@ -13,7 +13,7 @@ from fem_adhesion.assess.theories import estimated, loop
 from halfspace.elastic.layers import Layers
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import approach_scale
+from halfspace.equilibrium.events import approach_scale, tolerance_told
 from halfspace.scaling import Units
 from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
 from halfspace.values import Array, Estimate
@@ -79,6 +79,13 @@ class Prediction:
     def is_computed(self) -> bool:
         """Whether a solver has computed it, rather than a closed theory, which has a contact radius of its own."""
         return isinstance(self.curve, EquilibriumPath)
+
+    @property
+    def warning(self) -> str:
+        """Which numbers of a computed curve are less accurate than was asked, or nothing."""
+        if not isinstance(self.curve, EquilibriumPath) or not self.missed:
+            return ""
+        return f"{self.model}: {tolerance_told(self.curve.rtol, self.missed)}"
 
 
 def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) -> Prediction:

@@ -21,8 +21,6 @@ from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene
 from halfspace.elastic.layers import Layers
-from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import tolerance_told
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import PARABOLOID, Profile, Sphere
@@ -103,11 +101,7 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
     sample, unknown = _tried("thickness that is enough", partial(_thin_sample, half_space=half_space), contact)
     by_profile = None if contact.layer and tabor > USUAL.computed else profile  # JKR's theory on layers has no profile
     distances = verdict.ranked((half_space, profile, finite, *theories), contact.spacing)
-    missed = [
-        f"{model.model}: {tolerance_told(model.curve.rtol, model.missed)}"
-        for model in (half_space, profile, finite)
-        if model and model.missed and isinstance(model.curve, EquilibriumPath)
-    ]
+    warnings = [model.warning for model in (half_space, profile, finite) if model]
     return Assessment(
         contact,
         half_space,
@@ -117,7 +111,7 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
         tuple(verdict.deviations(half_space, by_profile, finite, contact.spacing)),
         distances,
         verdict.regime(tabor),
-        (*doubts, *verdict.yielding(contact), *filter(None, (reason, why_not, unknown)), *missed),
+        (*doubts, *verdict.yielding(contact), *filter(None, (reason, why_not, unknown, *warnings))),
         tuple(verdict.verdict(finite or half_space, distances, computed=finite is not None, doubts=doubts)),
         time.perf_counter() - began,
         sample,
