@@ -209,7 +209,7 @@ class Store:
         from fem_adhesion.common.numbers import counted  # loads NumPy, which no help needs
 
         outdated = [f"{counted(n, 'case')} computed by {what}: computed again" for what, n in self.outdated.items()]
-        return outdated + [f"{file} is computed again: {why}" for file, why in self.damaged.items()]
+        return (*outdated, *(f"{file} is computed again: {why}" for file, why in self.damaged.items()))
 
     def path(self, inputs: Plain) -> Path:
         """File of a case."""

@@ -208,7 +208,7 @@ def test_a_curve_whose_worker_died_is_tried_again(monkeypatch, tmp_path):
     )
     (died,) = study.run([1.0], ASKED, store)
     assert died == Summary(1.0, {}, UNKNOWN, UNKNOWN, {}, "killed")
-    assert store.get(study._inputs(1.0, ASKED)) is None
+    assert not list((tmp_path / "kept").rglob("*.json"))
 
 
 def test_the_exit_code_says_that_a_curve_is_missing(monkeypatch, capsys, tmp_path):
