@@ -166,7 +166,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
         (_standing(scene, how, to_load),),
         asdict(how) | {"curve_degree": curve.degree},
         _standing(scene, twin, to_load) if level and (doubt.other_cells or scene.scales.step_gap) else None,
-        ErrorRule(doubt.times * step * REMAINING, along=True, steps=scene.scales.steps),
+        ErrorRule(doubt.times * step * REMAINING, along=True, steps=scene.scales.steps, beyond=scene.tension_beyond),
     )
 
 

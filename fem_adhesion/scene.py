@@ -155,6 +155,13 @@ class Scene:
         end = min(end, self.body.extent(Scales(self.tabor, self.law, surface, self.body.layered)))
         return surface if surface.end <= end else UpTo(surface, end)
 
+    @property
+    def tension_beyond(self) -> float:
+        """Tension in R dgamma beyond the cells of a layer, whose surface goes on: no discretisation counts it."""
+        if not self.body.layered:
+            return 0.0
+        return Scales(self.tabor, self.law, self.shape.surface(self.tabor)).tension_beyond(self.surface.end)
+
     @cached_property
     def scales(self) -> Scales:
         """Its lengths."""

@@ -224,16 +224,23 @@ class Scales:
         """Radius at which finite cells end: there the undeformed gap has opened by `height`."""
         return self.radius_at(height)
 
-    def whole_radius(self, height: float) -> float:
-        """Radius at which cells end beyond which nothing acts: `outer_radius`, or farther if too much load is there.
+    def tension_beyond(self, r: float) -> float:
+        """Tension beyond a radius in beta, in R dgamma; 0 where the surface or the law ends.
 
         On a profile that rises as r^g a tension that decays as h^-n leaves 2 pi r^2 sigma/(g n - 2) beyond r.
         """
-        r, power = self.outer_radius(height), self.law.decay * self._growth - 2
+        power = self.law.decay * self._growth - 2
         if math.isinf(power) or math.isfinite(self.profile.end):
-            return r
+            return 0.0
         tension = abs(float(self.law.pressure(self.tabor * self.profile.height(np.array(r)), self.tabor)))
-        beyond = 2 * math.pi * r**2 * tension / power / self.rigid_tension
+        return 2 * math.pi * r**2 * tension / power
+
+    def whole_radius(self, height: float) -> float:
+        """Radius at which cells end beyond which nothing acts: `outer_radius`, or farther if too much load is there."""
+        r, power = self.outer_radius(height), self.law.decay * self._growth - 2
+        beyond = self.tension_beyond(r) / self.rigid_tension
+        if not beyond:
+            return r
         farther = min(max(1.0, beyond / self.how.left) ** (1 / power), self.how.farthest)
         if beyond > self.how.most_left * farther**power:
             least = math.log(beyond / self.how.most_left) / math.log(self.how.farthest)

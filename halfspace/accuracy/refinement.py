@@ -16,7 +16,7 @@ from halfspace.accuracy.further_folds import Completed, FurtherFolds
 from halfspace.accuracy.stages import Charted, FoldsLost, Rung, State, on_all
 from halfspace.equilibrium.charts import COMPRESSION, trace_charts
 from halfspace.equilibrium.conditions import STEEPEST
-from halfspace.equilibrium.contact import LOAD
+from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import FOLDS, Event, Tolerance
 from halfspace.equilibrium.search import energy_released, energy_size, find_events, folds_in_doubt
@@ -141,4 +141,6 @@ def energy_along(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate:
     values = [[energy_released(state) for state in chain] for chain in chains]
     ends = [[AWAY * float(state["zero_approach"].point.observables[LOAD]) for state in chain] for chain in chains]
     best = chains[0][-1]
-    return rung.rule.estimate(values, energy_size(best["separated"]) + energy_size(best["zero_approach"]), ends)
+    sizes = sum(energy_size(best[end]) for end in ("separated", "zero_approach"))
+    uncounted = rung.rule.beyond * abs(float(best["separated"].point.observables[APPROACH]))
+    return rung.rule.estimate(values, sizes, ends) + Estimate(0.0, uncounted)

@@ -148,13 +148,15 @@ class ErrorRule:
     whether the shift of an event along the path counts, see `estimate_event`: on grids that follow the contact, whose
     radius tells it precisely, and where there is no twin to guard against chance. `steps` says that it does for other
     numbers than those at a point alone, as under a law that ends by a step: an integral over a cell in which that
-    stands errs this way or that by its place, so that a number of several grids may agree by accident.
+    stands errs this way or that by its place, so that a number of several grids may agree by accident. `beyond` is the
+    tension in R dgamma that acts beyond the cells of all discretisations, so that no change tells of it.
     """
 
     remaining: float = REMAINING
     along: bool = False
     last: float = 1.0
     steps: bool = False
+    beyond: float = 0.0
 
     def change(self, chain: Sequence[Array | float]) -> Array:
         """Sum of the changes along a chain of two values or more, arrays (...) or numbers, the last `last` times."""
@@ -202,12 +204,23 @@ def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Array:
         ways = slice(None) if rule.along else slice(1)
         changes += [apart for chain in chains for apart in _apart(chain, rule)[ways]]
     errors = rule.remaining * np.max(changes, axis=0) + rounding(best.problem, best.point.x)
+    if rule.beyond:
+        errors += rule.beyond * _by_load(best)
     if rule.along:
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
     gap, radius = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
     alone = rule.along or len(chains) == 1
     errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], [gap if alone else 0.0, radius])
     return np.asarray(errors)
+
+
+def _by_load(event: Located) -> Array:
+    """Changes of the observables, (4,), by a load of 1 R dgamma that is the same all along the curve."""
+    changes: Array = np.eye(4)[LOAD]
+    if not event.condition.stationary:
+        by_shift = event.condition.weights[LOAD] / event.condition.rate(event.point)
+        changes += np.abs(by_shift * event.point.rates)
+    return changes
 
 
 def _changes(chain: Sequence[Located], rule: ErrorRule) -> Array:
