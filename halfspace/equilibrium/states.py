@@ -255,12 +255,12 @@ class FinestCurve(Valued):
             for a, b in pairwise(part.points):
                 if condition.of(a) * condition.of(b) <= 0 and b.arclength > a.arclength:
                     return part.problem, *self._met(part.problem, a, b, condition)
-        known = [part for part in parts if not self._is_left_behind(part.problem)]
+        known = [part for part in parts if not self._is_left_behind(part.problem)] or parts
         for problem, a, b in (bridge for before, after in pairwise(known) for bridge in self._bridges(before, after)):
             if condition.of(a) * condition.of(b) <= 0:
                 return problem, *self._met(problem, a, b, condition)
         part, near = min(
-            ((part, point) for part in known or parts for point in part.points),
+            ((part, point) for part in known for point in part.points),
             key=lambda one: abs(condition.of(one[1])),
         )
         solution = newton.solve(part.problem, near.x, newton.Control(np.eye(4)[k], value))
