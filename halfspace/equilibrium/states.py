@@ -259,16 +259,24 @@ class FinestCurve(Valued):
         for problem, a, b in (bridge for before, after in pairwise(known) for bridge in self._bridges(before, after)):
             if condition.of(a) * condition.of(b) <= 0:
                 return problem, *self._met(problem, a, b, condition)
-        part, near = min(
-            ((part, point) for part in known for point in part.points),
-            key=lambda one: abs(condition.of(one[1])),
-        )
-        solution = newton.solve(part.problem, near.x, newton.Control(np.eye(4)[k], value))
-        weights, s = self.metric.weights * near.rates, near.arclength + abs(condition.of(near))
-        point = make_point(part.problem, solution, self.metric, weights, s)
+        nearest = [(part, min(part.points, key=lambda p: abs(condition.of(p)))) for part in parts]
+        nearest.sort(key=lambda one: (self._is_left_behind(one[0].problem), abs(condition.of(one[1]))))
+        *others, (part, near) = nearest
+        for other, point in others:
+            try:
+                return other.problem, self._beside(other.problem, point, condition), 0.0
+            except NotConverged:
+                continue
+        return part.problem, self._beside(part.problem, near, condition), 0.0
+
+    def _beside(self, problem: Traceable, near: Point, condition: Condition) -> Point:
+        """State that meets a condition beside a point, and not on another branch, to where Newton's method may lead."""
+        solution = newton.solve(problem, near.x, newton.Control(condition.weights, condition.value))
+        s = near.arclength + abs(condition.of(near))
+        point = make_point(problem, solution, self.metric, self.metric.weights * near.rates, s)
         if self.metric.distance(point, near) > NEARBY:
-            raise NotConverged(f"no state at {value:.6g} is found between two grids; take a smaller rtol")
-        return part.problem, point, 0.0
+            raise NotConverged(f"no state at {condition.value:.6g} is found between two grids; take a smaller rtol")
+        return point
 
     def _met(self, problem: Traceable, a: Point, b: Point, condition: Condition) -> tuple[Point, float]:
         """State between two points that meets a condition, and the observable's second derivative there."""
