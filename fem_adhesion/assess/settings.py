@@ -58,7 +58,8 @@ class Settings:
     narrow: float = 1e-8  # error of the contact radius, in thicknesses
     root: float = 1e-3  # error of the logarithm of the thickness
 
-    # The figure
+    # The tables and the figure
+    digits: int = 4  # significant digits of a ratio, at most
     wider: float = 1.3  # of the frame, beyond the jump on
     higher: float = 0.35  # of the frame, above zero in pull-off forces
     thinned: int = 50  # of so many samples of a closed theory one is drawn

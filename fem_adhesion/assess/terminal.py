@@ -22,7 +22,6 @@ from fem_adhesion.registry import record_of, words_of
 from halfspace.laws import LENNARD_JONES
 
 STANDS = {"bonded": "bonded to its base", "sliding": "sliding on its base"}
-DIGITS_OF_RATIO = 4  # significant, at most
 
 
 def report(assessment: Assessment) -> RenderableType:
@@ -116,7 +115,7 @@ def _words(quantities: Iterable[str], header: str = "quantity", rank: int = 0) -
 
 def _percents(header: str, parts: Iterable[Quantity | None], rank: int = 0) -> Column:
     """Column of parts, in per cent."""
-    cells = [with_error(part, 100, DIGITS_OF_RATIO) if part else "-" for part in parts]
+    cells = [with_error(part, 100, USUAL.digits) if part else "-" for part in parts]
     return Column(f"{header}\n%", cells, rank)
 
 
@@ -141,7 +140,7 @@ def _thin_sample(contact: Contact, sample: ThinSample | None) -> Iterator[Render
     """What of it the half-space and the series get wrong without adhesion, and which thickness is enough."""
     if sample and contact.thickness:
         yield indentations_table(sample)
-        until = with_error(sample.hertz_until, digits=DIGITS_OF_RATIO)
+        until = with_error(sample.hertz_until, digits=USUAL.digits)
         reach = (sample.hertz_until.value * contact.thickness) ** 2 / contact.units.radius
         yield prose(
             "Chi: sqrt(R delta)/h of the indentation delta. Series: Dimitriadis et al. (2002), for chi up to 1. "

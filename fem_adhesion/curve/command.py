@@ -13,6 +13,7 @@ from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside, require_distinct
 from fem_adhesion.common.scene_options import add_body, add_contact, contact_of, refuse, scene_of, stiffness_of
 from fem_adhesion.common.words import part_in
+from fem_adhesion.curve.settings import USUAL
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,9 +24,7 @@ if TYPE_CHECKING:
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
 
-POINTS = 20  # of a curve for ParaView
 NOT_BY_WEAK_FORM = ("vtk", "render", "movie", "at", "beside", "points", "stiffness")
-OWN = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
 
 
 def add_options(command: Parser) -> None:
@@ -43,7 +42,7 @@ def add_options(command: Parser) -> None:
     body.add_argument("--rtol", type=float, help=accuracy)
     body.add_argument("--to-load", type=float, default=5.0, help="load in R dgamma at which it ends", metavar="W")
     results = command.add_argument_group("results", "A FILE may be - for standard output where it is text.")
-    points = f"in JSON, CSV and plot, as traced unless given; in DIR beside the events, {POINTS} unless given"
+    points = f"in JSON, CSV and plot, as traced unless given; in DIR beside the events, {USUAL.inside} unless given"
     for name, metavar, kind, text in (
         ("json", "FILE", Path, "write points, events, units and settings"),
         ("csv", "FILE", Path, "write points and events as a table"),
@@ -131,7 +130,7 @@ def _write(
 
 
 def _points(options: argparse.Namespace) -> int:
-    return POINTS if options.points is None else int(options.points)
+    return USUAL.inside if options.points is None else int(options.points)
 
 
 def _question(options: argparse.Namespace) -> Question:
@@ -204,16 +203,16 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
             refuse(options, names, why)
     radius = contact.units.radius if contact else math.nan
     own = getattr(scene.shape, "radius", radius)
-    if contact and abs(own / radius - 1) > OWN:
+    if contact and abs(own / radius - 1) > USUAL.own:
         from fem_adhesion.common.numbers import engineering
 
         decades = round(math.log10(own / radius))
         remedy = f"give --radius {engineering(own, 'm').replace(' ', '')}"
-        if abs(own / radius * 10.0**-decades - 1) <= OWN:
+        if abs(own / radius * 10.0**-decades - 1) <= USUAL.own:
             remedy = f"multiply both columns by 1e{-decades:+03d}"
         raise InputError(
             f"radius = {engineering(radius, 'm')} under a tip whose apex has {own:.4g} in its table's unit, limit: the "
-            f"same to {100 * OWN:g} %, the table in m; {remedy}"
+            f"same to {100 * USUAL.own:g} %, the table in m; {remedy}"
         )
 
 

@@ -91,6 +91,11 @@ def _draw_frame(axes: Any, curves: Curves, frame: Frame) -> None:
     _draw_other(axes, curves)
     draw_states(axes, curves)
     _draw_jumps(axes, curves, frame)
+    limit(axes, curves, frame)
+
+
+def limit(axes: Any, curves: Curves, frame: Frame) -> None:
+    """Let axes show a frame, with a line at no load."""
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
     xlim, ylim = curves.shown(approach=np.array(frame.approach), load=np.array(frame.load))
     axes.set(xlim=xlim, ylim=ylim)

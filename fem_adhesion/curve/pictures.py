@@ -23,7 +23,7 @@ from scipy.spatial import KDTree
 from fem_adhesion.common import lines, style
 from fem_adhesion.common.numbers import with_error
 from fem_adhesion.curve.figure import LOOK
-from fem_adhesion.curve.load import STATES, contact_words, draw_line
+from fem_adhesion.curve.load import STATES, contact_words, draw_line, limit
 from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.fields import State, state_at
@@ -151,9 +151,7 @@ def _add_curve(figure: Figure, curves: Curves, state: State) -> None:
     draw_line(axes, curves, line)
     at = curves.shown(approach=state.observables[APPROACH], load=state.observables[LOAD])
     axes.plot(*at, marker="o", markersize=9, color="black", zorder=5)
-    axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
-    xlim, ylim = curves.shown(approach=np.array(frame.approach), load=np.array(frame.load))
-    axes.set(xlim=xlim, ylim=ylim)
+    limit(axes, curves, frame)
     axes.set_xlabel(curves.scales["approach"].label, fontsize=9)
     axes.set_ylabel(curves.scales["load"].label, fontsize=9)
     axes.tick_params(labelsize=8)

@@ -9,6 +9,10 @@ from dataclasses import dataclass
 class Settings:
     """Numbers of what is shown of a curve."""
 
+    # What is asked
+    inside: int = 20  # points of a curve for ParaView
+    own: float = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
+
     # The page
     page: tuple[float, float] = (7.3, 10.0)  # inches
     samples: int = 600  # points of a theory's line
