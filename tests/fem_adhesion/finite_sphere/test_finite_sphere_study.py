@@ -287,12 +287,12 @@ def test_results_of_other_code_or_format_are_computed_again(tmp_path, monkeypatc
     records = run(CASES[:3], opened(tmp_path), jobs=1)
     later = open_store(tmp_path, "edited code", resume=True)
     again = run(CASES[:3], later, jobs=1)
-    assert later.notes == ("3 cases computed by other code: computed again",)
+    assert list(later.notes) == ["3 cases computed by other code: computed again"]
     assert [record.values for record in again] == [record.values for record in records]
     monkeypatch.setattr(files, "SCHEMA", files.SCHEMA + 1)
     later = open_store(tmp_path, "edited code", resume=True)
     run(CASES[:1], later, jobs=1)
-    assert later.notes == ("1 case computed by another format: computed again",)
+    assert list(later.notes) == ["1 case computed by another format: computed again"]
 
 
 @pytest.mark.parametrize("fresh", [False, True])

@@ -187,7 +187,7 @@ def test_what_is_kept_is_not_traced_again(tmp_path):
     other = open_store(tmp_path / "kept", "other code", resume=True)
     study.run(TABORS[:1], ASKED, other, jobs=1, work=counted)
     assert counted.calls == [*TABORS, TABORS[0]]
-    assert other.notes == ("1 case computed by other code: computed again",)
+    assert list(other.notes) == ["1 case computed by other code: computed again"]
     for number, other_asked in enumerate(({"rtol": RTOL / 2}, {"to_load": 4.0}, {"law": Morse(3.0)})):
         study.run(TABORS[1:2], ASKED | other_asked, store, jobs=1, work=counted)
         assert len(counted.calls) == 5 + number
