@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from halfspace.equilibrium.charts import Chart, Stage
 from halfspace.equilibrium.conditions import Located
@@ -41,7 +42,7 @@ Discretised = tuple[Callable[[], Charts], Stage]
 
 def charted(charts: Charts) -> Discretised:
     """The same charts for the curve, its events and its points."""
-    return (lambda: charts), Charted(charts)
+    return partial(tuple, charts), Charted(charts)  # what a pickled path takes along
 
 
 @dataclass(frozen=True, eq=False, repr=False)
