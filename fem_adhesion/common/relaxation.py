@@ -18,10 +18,18 @@ from halfspace.errors import InputError, NotConverged
 from halfspace.laws import Law
 from halfspace.values import Array, Valued
 
-MOST_SWEEPS = 20_000  # Greenwood's
-CLOSEST = -0.7  # gap H below which the law is not followed: an overshoot, no contact bears such pressures
-HOPELESS = 1e6  # relative residual beyond which an iteration has run away
-CHECKED_EVERY = 10  # sweeps
+
+@dataclass(frozen=True)
+class Settings:
+    """Numbers of both iterations."""
+
+    most: int = 20_000  # sweeps, Greenwood's
+    closest: float = -0.7  # gap H below which the law is not followed: an overshoot, no contact bears such pressures
+    hopeless: float = 1e6  # relative residual beyond which an iteration has run away
+    checked: int = 10  # sweeps between two looks at the residual
+
+
+USUAL = Settings()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -29,7 +37,7 @@ class Relaxed(Valued):
     """A state to which an iteration converged: the state vector x of the problem, on its fixed grid.
 
     Observables (4,) are approach, load, central gap, contact radius; the sweeps taken are a multiple of
-    `CHECKED_EVERY`. The residual is the largest misfit of gap or pressure, relative, below the tolerance; the error is
+    `USUAL.checked`. The residual is the largest misfit of gap or pressure, relative, below the tolerance; the error is
     larger by the number of sweeps in which the iteration gains a factor e.
     """
 
@@ -46,7 +54,7 @@ def simple(
     *,
     relaxation: float = 0.05,
     tolerance: float = 1e-10,
-    most_sweeps: int = MOST_SWEEPS,
+    most_sweeps: int = USUAL.most,
 ) -> Relaxed:
     """Solve by simple relaxation, H <- H + c (H' - H), H' being the gaps under the pressures that belong to H.
 
@@ -61,13 +69,13 @@ def simple(
 
     def sweep() -> None:
         nonlocal H
-        H = np.maximum(H + relaxation * (given + C @ law.pressure(H, tabor) - H), CLOSEST)
+        H = np.maximum(H + relaxation * (given + C @ law.pressure(H, tabor) - H), USUAL.closest)
 
-    def residual() -> float:
-        return float(np.max(np.abs(given + C @ law.pressure(H, tabor) - H) / (1 + H)))
+    def state() -> State:
+        P = law.pressure(H, tabor)
+        return H, P, float(np.max(np.abs(given + C @ P - H) / (1 + H)))
 
-    sweeps, misfit = _iterate("simple relaxation", relaxation, sweep, residual, tolerance, most_sweeps)
-    return _relaxed(problem, H, law.pressure(H, tabor), sweeps, misfit)
+    return _iterate(problem, "simple relaxation", relaxation, sweep, state, tolerance, most_sweeps)
 
 
 def greenwood(
@@ -77,7 +85,7 @@ def greenwood(
     *,
     relaxation: float = 1.0,
     tolerance: float = 1e-10,
-    most_sweeps: int = MOST_SWEEPS,
+    most_sweeps: int = USUAL.most,
 ) -> Relaxed:
     """Solve by Greenwood's local Newton-Raphson iteration.
 
@@ -99,12 +107,12 @@ def greenwood(
     def sweep() -> None:
         _correct_each(P, given + C @ P, columns, law, tabor, relaxation)
 
-    def residual() -> float:
-        H = np.maximum(given + C @ P, CLOSEST)
-        return float(np.max(np.abs(P - law.pressure(H, tabor))) / np.max(np.abs(P)))
+    def state() -> State:
+        H = given + C @ P
+        off = P - law.pressure(np.maximum(H, USUAL.closest), tabor)
+        return H, P, float(np.max(np.abs(off)) / np.max(np.abs(P)))
 
-    sweeps, misfit = _iterate("Greenwood's iteration", relaxation, sweep, residual, tolerance, most_sweeps)
-    return _relaxed(problem, given + C @ P, P, sweeps, misfit)
+    return _iterate(problem, "Greenwood's iteration", relaxation, sweep, state, tolerance, most_sweeps)
 
 
 def _gaps_under(problem: ContactProblem, control: Control) -> tuple[Array, Array]:
@@ -127,7 +135,7 @@ def _correct_each(P: Array, H: Array, columns: Array, law: Law, tabor: float, re
     """One sweep of local corrections, in place; each node sees those before it."""
     last = P.size - 1
     for i, column in enumerate(columns):
-        gap = max(H[i], CLOSEST)
+        gap = max(H[i], USUAL.closest)
         change = relaxation * (law.pressure(gap, tabor) - P[i]) / (1 - law.slope(gap, tabor) * column[i])
         P[i] += change
         if i > 0:
@@ -137,24 +145,31 @@ def _correct_each(P: Array, H: Array, columns: Array, law: Law, tabor: float, re
         H += change * column
 
 
+State = tuple[Array, Array, float]
+"""Gaps, pressures, and the residual."""
+
+
 def _iterate(
+    problem: ContactProblem,
     name: str,
     relaxation: float,
     sweep: Callable[[], None],
-    residual: Callable[[], float],
+    state: Callable[[], State],
     tolerance: float,
     most_sweeps: int,
-) -> tuple[int, float]:
-    """Sweep until the residual meets the tolerance; return the sweeps taken and the residual."""
-    first = misfit = residual()
+) -> Relaxed:
+    """Sweep until the residual meets the tolerance, and add the approach at which the pressures leave the gaps."""
+    first = misfit = state()[-1]
     for sweeps in range(1, most_sweeps + 1):
         sweep()
-        if sweeps % CHECKED_EVERY:
+        if sweeps % USUAL.checked:
             continue
-        misfit = residual()
+        H, P, misfit = state()
         if misfit < tolerance:
-            return sweeps, misfit
-        if not misfit < HOPELESS * (1 + first):
+            deflection = problem.tabor * problem.operator.at(1.0).compliance[0] @ P
+            x = np.concatenate([H, [problem.undeformed(0.0)[0] + deflection - H[0], 1.0]])
+            return Relaxed(x, problem.observables(x), sweeps, misfit)
+        if not misfit < USUAL.hopeless * (1 + first):
             raise NotConverged(
                 f"{name} ran away within {sweeps} sweeps at relaxation {relaxation:g} (relative residual "
                 f"{misfit:.1e}); take a smaller relaxation, a nearer start or halfspace.equilibrium.newton.solve"
@@ -163,11 +178,3 @@ def _iterate(
         f"{name} did not converge in {most_sweeps} sweeps at relaxation {relaxation:g} (relative residual "
         f"{misfit:.1e}, limit {tolerance:.0e}); take another relaxation, fewer nodes or Newton's method"
     )
-
-
-def _relaxed(problem: ContactProblem, H: Array, P: Array, sweeps: int, residual: float) -> Relaxed:
-    """Complete the state by the approach at which these pressures leave these gaps."""
-    deflection = problem.tabor * problem.operator.at(1.0).compliance[0] @ P
-    approach = problem.undeformed(0.0)[0] + deflection - H[0]
-    x = np.concatenate([H, [approach, 1.0]])
-    return Relaxed(x, problem.observables(x), sweeps, residual)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_adhesion.common.relaxation import CHECKED_EVERY, greenwood, simple
+from fem_adhesion.common.relaxation import USUAL, greenwood, simple
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
@@ -25,7 +25,7 @@ def test_simple_relaxation_finds_newtons_state(tabor, relaxation, control):
     np.testing.assert_allclose(found.observables[:3], expected.observables[:3], atol=1e-8)
     np.testing.assert_allclose(found.x, expected.x, atol=1e-8)
     assert found.residual < 1e-11
-    assert found.sweeps % CHECKED_EVERY == 0
+    assert found.sweeps % USUAL.checked == 0
 
 
 @pytest.mark.parametrize("tabor", [0.5, 2.0])
