@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import Stage, placed, settled, transfer
+from halfspace.equilibrium.charts import Stage, placed, settled
 from halfspace.equilibrium.conditions import (
     FOLD,
     NEARBY,
@@ -29,10 +29,8 @@ from halfspace.equilibrium.conditions import (
     between,
     hermite,
     rounding,
-    same_place,
-    seen_from,
 )
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.events import ErrorRule, errors_of
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
@@ -254,53 +252,28 @@ class FinestCurve(Valued):
         for part in parts:
             for a, b in pairwise(part.points):
                 if condition.of(a) * condition.of(b) <= 0 and b.arclength > a.arclength:
-                    return part.problem, *self._met(part.problem, a, b, condition)
-        known = [part for part in parts if not self._is_left_behind(part.problem)] or parts
-        for problem, a, b in (bridge for before, after in pairwise(known) for bridge in self._bridges(before, after)):
-            if condition.of(a) * condition.of(b) <= 0:
-                return problem, *self._met(problem, a, b, condition)
+                    bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
+                    return part.problem, between(part.problem, a, b, condition, self.metric).point, bend
+        # Between the last point on one discretisation and the first on the next, either of which may not have it.
         nearest = [(part, min(part.points, key=lambda p: abs(condition.of(p)))) for part in parts]
         nearest.sort(key=lambda one: (self._is_left_behind(one[0].problem), abs(condition.of(one[1]))))
-        *others, (part, near) = nearest
+        gaps = [self.metric.distance(a.points[-1], b.points[0]) for a, b in pairwise(parts)]
+        reach, (*others, (part, near)) = max([NEARBY, *gaps]), nearest
         for other, point in others:
             try:
-                return other.problem, self._beside(other.problem, point, condition), 0.0
+                return other.problem, self._beside(other.problem, point, condition, reach), 0.0
             except NotConverged:
                 continue
-        return part.problem, self._beside(part.problem, near, condition), 0.0
+        return part.problem, self._beside(part.problem, near, condition, reach), 0.0
 
-    def _beside(self, problem: Traceable, near: Point, condition: Condition) -> Point:
-        """State that meets a condition beside a point, and not on another branch, to where Newton's method may lead."""
+    def _beside(self, problem: Traceable, near: Point, condition: Condition, reach: float) -> Point:
+        """State that meets a condition in reach of a point: Newton's method may lead to another branch, farther off."""
         solution = newton.solve(problem, near.x, newton.Control(condition.weights, condition.value))
         s = near.arclength + abs(condition.of(near))
         point = make_point(problem, solution, self.metric, self.metric.weights * near.rates, s)
-        if self.metric.distance(point, near) > NEARBY:
+        if self.metric.distance(point, near) > reach:
             raise NotConverged(f"no state at {condition.value:.6g} is found between two grids; take a smaller rtol")
         return point
-
-    def _met(self, problem: Traceable, a: Point, b: Point, condition: Condition) -> tuple[Point, float]:
-        """State between two points that meets a condition, and the observable's second derivative there."""
-        k = condition.observable
-        bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
-        return between(problem, a, b, condition, self.metric).point, bend
-
-    def _bridges(self, before: Segment, after: Segment) -> Iterator[tuple[Traceable, Point, Point]]:
-        """Last point on one discretisation and first on the next, both on either of these that has them."""
-        last, first = before.points[-1], after.points[0]
-        for problem, other, point in (
-            (before.problem, after.problem, first),
-            (after.problem, before.problem, last),
-        ):
-            if problem.interface.follows_contact and np.isnan(point.observables[CONTACT_RADIUS]):
-                continue
-            start = transfer(other, point.x, problem)
-            try:
-                there = same_place(point, problem, start, self.metric)
-            except NotConverged:
-                continue
-            a, b = (last, there) if point is first else (there, first)
-            if (b := seen_from(a, b, self.metric)).arclength > a.arclength:
-                yield problem, a, b
 
     def _is_left_behind(self, problem: Traceable) -> bool:
         return any(problem is one for one in self.left_behind)

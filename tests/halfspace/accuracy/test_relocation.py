@@ -145,6 +145,16 @@ def test_shift_and_rest_do_not_cancel_in_an_error():
         assert event.approach_error == pytest.approx(0.5 * 2e-4, rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("own", "errors"), [(conditions.FOLD, [0, 1e-3, 0, 0]), (conditions.ZERO_LOAD, [4e-4, 2e-3, 2e-4, 1e-4])]
+)
+def test_a_tension_that_no_grid_counts_shifts_loads_and_what_is_at_a_load(own, errors):
+    chain = _chain(own, np.array([2.0, -5.0, 1.0, 0.5]), np.ones((2, 4)))
+    event = events.estimate_event("any", [chain], events.ErrorRule(beyond=1e-3))
+    found = [event.approach_error, event.load_error, event.central_gap_error, event.contact_radius_error]
+    assert found == pytest.approx(errors, rel=1e-9, abs=1e-10)
+
+
 def _chain(condition, rates, values, near_axis=((0.0,), (0.0,))):
     """An event on grids on which its numbers, and the gaps near the axis, are these."""
     interface = SimpleNamespace(

@@ -268,3 +268,4 @@ def test_bounds_of_sums_and_products_hold(signs):
     ):
         assert abs(found.value - exact) <= found.error + more
     assert max(abs((a + b).error - (a.error + b.error)), abs((a * b).error - 1.1e-4)) < 1e-16
+    assert (Estimate(3.0, 0.0) / Estimate(1.0, 0.5)).error >= 3.0  # 3/0.5 - 3
