@@ -21,7 +21,7 @@ from fem_adhesion.discretise import (
 )
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
-from halfspace.accuracy.grids import TWIN, rings
+from halfspace.accuracy.grids import GRIDS, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.accuracy.standing import Standing, left_between, standing
@@ -159,7 +159,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """
     degree = degree_for(rtol) + level
     how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
-    twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
+    twin = replace(below, finest=GRIDS.twin[0] * below.finest, growth=GRIDS.twin[1] * below.growth)
     doubt, step = scene.body.doubt, BY_STEP if scene.scales.step_gap else 1.0
     return Rung(
         sized_body(scene, curve, to_load).curve,

@@ -25,7 +25,7 @@ import numpy as np
 
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import Made, SizedBody
-from halfspace.accuracy.grids import TWIN
+from halfspace.accuracy.grids import GRIDS
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
 from halfspace.accuracy.standing import standing
@@ -180,7 +180,7 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
 
     def rung(level: int) -> Rung:
         above, below = (resolution_for(rtol, max(n, 0)) for n in (level, level - 1))
-        twin = Fineness(below.nodes, below.harmonics, above.finest * TWIN[0], above.growth * TWIN[1])
+        twin = Fineness(below.nodes, below.harmonics, above.finest * GRIDS.twin[0], above.growth * GRIDS.twin[1])
         curve = sized_body(scene, Fineness(above.nodes, 10.0), to_load)
         body, other = (sized_body(scene, how, to_load) for how in (above, twin))
         settings = {"nodes": above.nodes, "harmonics": counts(scene, above)}

@@ -27,7 +27,7 @@ from fem_adhesion.finite_strain.settings import USUAL, Settings
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.grids import TWIN
+from halfspace.accuracy.grids import GRIDS
 from halfspace.accuracy.refinement import ascend, climb
 from halfspace.accuracy.stages import Rung, State, on_all
 from halfspace.accuracy.standing import Standing, WhereAsked
@@ -106,7 +106,7 @@ class Stages(Valued):
         degree = lowest + max(level, 1)
         linear = not level and nearly_linear(self.scene, to_load, self.settings)
         curve = partial(linear_charts, self.scene, to_load) if linear else partial(iter, self.windows(degree - 1))
-        other, body = self.body(degree - 1, *TWIN[:2]), self.body(degree)
+        other, body = self.body(degree - 1, *GRIDS.twin[:2]), self.body(degree)
         bodies = [other] if not level else [body] if level == 1 else [other, body]
         stages = tuple(Raising(one, partial(Stages.windows, self, one.how.degree)) for one in bodies)
         left = REMAINING / self.scene.scales.gradual

@@ -36,20 +36,23 @@ from halfspace.values import Array, Valued
 
 
 @dataclass(frozen=True)
-class HandOver:
-    """Where a curve and its events go over from the chart fine on the axis to the one that follows the contact edge."""
+class ChartSettings:
+    """Where a curve goes over from the chart fine on the axis to that which follows the contact, and how that is made.
+
+    Events go over elsewhere than the curve: with the radius of the curve their estimates were 1000 times as large.
+    """
 
     equal: int = 3  # cells of equal length on the axis, which carry a contact wherever it ends in them
     leave: float = 0.8  # of these cells: the contact radius at which the curve leaves the chart on the axis
-    events: float = 1.0  # cells: the radius at which an event does; with 3 estimates of folds were 1000 times as large
+    events: float = 1.0  # cells: the radius at which an event does
+    most: int = 16  # operators in a part of a chart: each state combines them all
+    together: int = 4  # grids integrated at once: with all of a curve's it took 0.18 GB more, and no less time
+    across: float = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
+    roughly: float = 1e-3  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again
+    steps: int = 25  # per unit of the logarithm: charts end where those of like contacts do, to be the same
 
 
-HAND_OVER = HandOver()
-MOST = 16  # operators in a part of a chart: each state combines them all
-TOGETHER = 4  # grids integrated at once: with all of a curve's at once it took 0.18 GB more, and no less time
-ACROSS = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
-ROUGHLY = 1e-3  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again elsewhere
-STEPS = 25  # per unit of the logarithm: where charts begin and end, so that those of like contacts are the same
+CHARTS = ChartSettings()
 
 Made = tuple[ElasticOperator, int]
 
@@ -93,16 +96,16 @@ class SizedBody(Valued):
     @property
     def until(self) -> float:
         """Contact radius in beta up to which the chart fine on the axis serves."""
-        return HAND_OVER.leave * self._reach
+        return CHARTS.leave * self._reach
 
     @property
     def leave(self) -> float:
         """Contact radius in beta from which on the other chart serves an event."""
-        return HAND_OVER.events * self.length
+        return CHARTS.events * self.length
 
     @property
     def _reach(self) -> float:
-        return min(HAND_OVER.equal * self.length, float(self.outer[0]) / 2)
+        return min(CHARTS.equal * self.length, float(self.outer[0]) / 2)
 
     def lines(self, edge: float = 0.0) -> Array:
         """Ends of all cells that are finest at a contact edge, in the surface's coordinate, or on the axis."""
@@ -135,7 +138,7 @@ class SizedBody(Valued):
         GridTooLarge if the store has no room for all: each state would take all of them anew.
         """
         made: list[Made] = []
-        for few in np.array_split(lines, math.ceil(len(lines) / TOGETHER)):
+        for few in np.array_split(lines, math.ceil(len(lines) / CHARTS.together)):
             made += self.together(few) if self.together else [self.make(one) for one in few]
             require_stored(len(lines), made[0][0].radii.size)
         return made
@@ -146,7 +149,7 @@ class SizedBody(Valued):
         widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * self.scales.profile.end)
         return min(self.leave, widest / 2), widest
 
-    def curve(self, error: float = ROUGHLY) -> tuple[Chart, Chart]:
+    def curve(self, error: float = CHARTS.roughly) -> tuple[Chart, Chart]:
         """Charts for the whole curve; that which follows the contact errs by so much in loads, R dgamma, or gaps, eps.
 
         Narrow parts of few operators each serve wide ranges of contact radii: only those that are met are made.
@@ -155,9 +158,9 @@ class SizedBody(Valued):
         return self.centred(), self.over(ends, counts)
 
     def _parts(self, least: float, most: float, error: float) -> tuple[list[float], list[int]]:
-        """Ends of the parts of a range of contact radii, halved until none takes more than `MOST`, and operators."""
+        """Ends of the parts of a range of contact radii, halved until none takes more than `most`, and operators."""
         count, middle = self.operators_between(least, most, error), math.sqrt(least * most)
-        if count <= MOST:
+        if count <= CHARTS.most:
             return [least, most], [count]
         (below, few), (above, more) = (self._parts(*half, error) for half in ((least, middle), (middle, most)))
         return below + above[1:], few + more
@@ -200,7 +203,7 @@ class SizedBody(Valued):
         end = (np.log(float(self.outer[0])) - (high + low) / 2) / window
         side, end = self.strip / window, max(end, 1.1)  # where they end within the window, more than ever pay
         rho = min(side + np.sqrt(side**2 + 1), end + np.sqrt(end**2 - 1))
-        return max(2, int(np.ceil(np.log(ACROSS * self.scales.softest / error) / np.log(rho))))
+        return max(2, int(np.ceil(np.log(CHARTS.across * self.scales.softest / error) / np.log(rho))))
 
 
 def require_stored(count: int, nodes: int) -> None:
@@ -237,8 +240,8 @@ def at_tip(profile: Surface, nodes: int) -> float:
 
 
 def step_above(length: float) -> float:
-    """The next length above of a sequence with `STEPS` to a factor of e."""
-    return of_sequence(length, STEPS, np.ceil)
+    """The next length above of a sequence with CHARTS.steps to a factor of e."""
+    return of_sequence(length, CHARTS.steps, np.ceil)
 
 
 def of_sequence(length: float, steps: int, rounded: Callable[[float], float]) -> float:

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from halfspace.accuracy.finite_bodies import HAND_OVER, Made, SizedBody, at_tip
+from halfspace.accuracy.finite_bodies import CHARTS, Made, SizedBody, at_tip
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.elastic.operators import Homogeneous
@@ -20,16 +20,28 @@ from halfspace.errors import InputError
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 
-EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
-MOST_NODES = 16  # of a panel
-# Times as fast as elsewhere cells grow from a tip u^k: the nearer to the axis they are, the less there is to be left of
-# it. In the first cell n nodes leave n^(-2k) of it, so that its radius is n^2 times that at which u^k is all left. With
-# 2 or 3 in the place of 1.5 two of 427 numbers were outside their estimates.
-TIP = 1.5
-# Found by trial; what each decides at half and at double is in tests/estimates/constants.py.
-ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
-MOST_WIDTHS = 60  # of a spike of tension that are resolved at once
-TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
+
+@dataclass(frozen=True)
+class GridSettings:
+    """How fine grids are, and what their errors leave.
+
+    From a tip u^k cells grow faster than elsewhere: the nearer to the axis they are, the less there is of it. In the
+    first cell n nodes leave n^(-2k), so that its radius is n^2 times that at which u^k is all left.
+    """
+
+    extent: float = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good
+    most_nodes: int = 16  # of a panel
+    tip: float = 1.5  # times as fast as elsewhere; with 2 or 3 two of 427 numbers were outside their estimates
+    one_node: float = 2.0  # of the change by one node more, what may be left: mostly less
+    most_widths: int = 60  # of a spike of tension that are resolved at once
+    twin: tuple[float, ...] = (
+        0.75,
+        0.87,
+        0.8,
+    )  # finest cells, growth and extent, in its sibling's: no cell is the same
+
+
+GRIDS = GridSettings()
 
 
 @dataclass(frozen=True)
@@ -59,7 +71,7 @@ def resolution_for(scales: Scales, rtol: float, level: int = 0) -> Resolution:
     The first level above it has one more, the second two more than that, and so on.
     """
     nodes = max(math.ceil(2 - math.log10(rtol) - 1e-9), 5) + level * (level + 1) // 2
-    return Resolution(min(nodes, MOST_NODES), finest=0.6, growth=3.0, extent=EXTENT * scales.widened)
+    return Resolution(min(nodes, GRIDS.most_nodes), finest=0.6, growth=3.0, extent=GRIDS.extent * scales.widened)
 
 
 def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution, Resolution]:
@@ -69,7 +81,7 @@ def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution
 
 def twin_of(resolution: Resolution) -> Resolution:
     """Resolution as fine as another, with other cells."""
-    finest, growth, extent = TWIN
+    finest, growth, extent = GRIDS.twin
     return replace(
         resolution,
         finest=finest * resolution.finest,
@@ -87,8 +99,8 @@ def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doub
     level's own nodes, counts as far as it exceeds that: both at once are 13 times the error on 0.01 beta.
     """
     most, fewer = (resolution.nodes for resolution in resolutions)
-    remaining = doubt * (ONE_NODE if level == 1 or scales.pieced else REMAINING)
-    return ErrorRule(remaining if most - fewer == level else max(remaining, ONE_NODE), steps=scales.steps)
+    remaining = doubt * (GRIDS.one_node if level == 1 or scales.pieced else REMAINING)
+    return ErrorRule(remaining if most - fewer == level else max(remaining, GRIDS.one_node), steps=scales.steps)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,7 +121,7 @@ def rings(
     growth: float,
     extent: float,
     to_load: float = COMPRESSION,
-    nodes: int = MOST_NODES,
+    nodes: int = GRIDS.most_nodes,
 ) -> Rings:
     """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`.
 
@@ -120,8 +132,8 @@ def rings(
         return Rings(_fine_throughout(scales, finest, scales.growth(growth), outer, to_load))
     length, widest, first = scales.edge_cell(finest), scales.widest_radius(to_load), at_tip(scales.profile, nodes)
     growth = scales.growth(growth)
-    towards = TIP * growth if scales.profile.pointed else growth
-    equal, leave = HAND_OVER.equal, HAND_OVER.leave
+    towards = GRIDS.tip * growth if scales.profile.pointed else growth
+    equal, leave = CHARTS.equal, CHARTS.leave
     reach = math.floor(equal * scales.flat) * length  # that carries a contact there at once
     centred = grid.graded(0.0, length, outer, growth=growth, until=reach)
     edge = grid.graded(1.0, 2 * length / widest, outer / (leave * equal * length), growth=growth)  # as wide at first
@@ -133,11 +145,11 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
     """Breakpoints as fine as at a contact edge wherever one may stand, by a law whose tension has several largest."""
     reach = float(np.hypot(scales.widest_radius(to_load), scales.radius_at(scales.law.outermost)))
     width = scales.least_width
-    if reach > MOST_WIDTHS * width:
+    if reach > GRIDS.most_widths * width:
         raise InputError(
             f"{scales.law}: the tension rises again at H = {scales.law.outermost:.3g}, so that what varies over "
             f"{width:.2g} beta may stand anywhere up to {reach:.3g} beta, {reach / width:.0f} times as far, limit: "
-            f"{MOST_WIDTHS}; take a smaller tabor than {scales.tabor:g}, a smaller to_load or a smoother law"
+            f"{GRIDS.most_widths}; take a smaller tabor than {scales.tabor:g}, a smaller to_load or a smoother law"
         )
     spacing = finest * width
     return grid.graded(0.0, spacing, max(outer, reach + spacing), growth=growth, until=reach)
@@ -162,7 +174,7 @@ def half_space_charts(
     """Charts of the half-space: centred on the axis and, unless that is fine throughout, following the contact edge."""
     lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, resolution.nodes)
     centred = make(resolution.nodes, scales.tail_reach, lines.centred)
-    leave = lines.until / HAND_OVER.leave  # the end of the equal cells
+    leave = lines.until / CHARTS.leave  # the end of the equal cells
     first = Chart(contact_of(scales, centred), centred.radii.size, lines.until, leave)
     if lines.edge is None:
         return (first,)

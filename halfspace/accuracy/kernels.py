@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from halfspace.accuracy.grids import (
-    EXTENT,
-    ONE_NODE,
+    GRIDS,
     MakeOperator,
     Resolution,
     endless,
@@ -75,13 +74,15 @@ def _straight(kind: str, parts: int, intervals: int, reach: float, cells: Array)
 def _finer(scales: Scales, rtol: float, level: int) -> tuple[Resolution, Resolution]:
     """Resolutions with twice as many intervals from level to level."""
     least = max(FEWEST, math.ceil((PART / rtol) ** 0.25))
-    here, below = (Resolution(least * 2**k, 0.6, 3.0, EXTENT * scales.widened) for k in (level, max(level - 1, 0)))
+    here, below = (
+        Resolution(least * 2**k, 0.6, 3.0, GRIDS.extent * scales.widened) for k in (level, max(level - 1, 0))
+    )
     return here, twin_of(below)
 
 
 def _falling(scales: Scales, *_: object) -> ErrorRule:
     """How errors are told from the change by a level: where derivatives leap they fall as the square alone."""
-    return ErrorRule(ONE_NODE if scales.pieced else CROSSING)
+    return ErrorRule(GRIDS.one_node if scales.pieced else CROSSING)
 
 
 KERNELS: Mapping[str, Kernel] = {

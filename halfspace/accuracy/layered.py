@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from halfspace.accuracy.finite_bodies import HAND_OVER, Made, SizedBody, at_equator, at_tip, step_above
+from halfspace.accuracy.finite_bodies import CHARTS, Made, SizedBody, at_equator, at_tip, step_above
 from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.accuracy.stages import Discretised, charted
 from halfspace.accuracy.standing import sized
@@ -64,7 +64,7 @@ def layered_charts(
     outer = scales.outer_radius(how.extent**2 / 2)
     first, *rest = half_space_charts(scales, how, to_load=to_load)
     operator = first.problem.interface.operator.at(1.0)
-    leave = HAND_OVER.events * scales.edge_cell(how.finest)
+    leave = CHARTS.events * scales.edge_cell(how.finest)
     charts = [replace(first, problem=contact_of(scales, with_images(images, operator, outer)), leave=leave)]
     for chart in rest:
         unit, widest = chart.problem.interface.operator.at(1.0), step_above(scales.widest_radius(to_load))

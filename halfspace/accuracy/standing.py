@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Protocol
 
-from halfspace.accuracy.finite_bodies import ROUGHLY, SizedBody
+from halfspace.accuracy.finite_bodies import CHARTS, SizedBody
 from halfspace.accuracy.stages import Charted, Discretised
 from halfspace.equilibrium.charts import Chart, Stage, moved, undeformed_radius
 from halfspace.equilibrium.conditions import Located
@@ -86,7 +86,7 @@ class Standing(WhereAsked):
         return self.along()
 
 
-def standing(body: SizedBody, left: float = ROUGHLY) -> Standing:
+def standing(body: SizedBody, left: float = CHARTS.roughly) -> Standing:
     """Stage on which every event has cells of its own: one operator, where a chart that follows the contact takes ten.
 
     Points of the curve share operators interpolated between radii, which leave so much of loads in R dgamma and gaps in

@@ -18,7 +18,7 @@ from halfspace.equilibrium.conditions import FOLD, Located, nearest, relocate, s
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import (
-    KNOWN,
+    PATH,
     WHOLE_BODY,
     Metric,
     Point,
@@ -98,7 +98,7 @@ def trace_charts(
         point = _hand_over(segments[-1], problem, metric) if segments else separated(problem, first, metric)
         ended = _ended(to_load, problem.interface.profile.end)
         stop, pace = _left(chart, ended), steps or _pace(problem, segments)
-        trail = [passed(s.problem, p.x, p.arclength) for s in segments[-1:] for p in s.points[-KNOWN:-1]]
+        trail = [passed(s.problem, p.x, p.arclength) for s in segments[-1:] for p in s.points[-PATH.known : -1]]
         segments.append(Segment(problem, tuple(follow(problem, point, metric, stop, steps=pace, trail=trail))))
         if ended(segments[-1].points[-1]):
             break

@@ -17,8 +17,7 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import (
-    NEARLY,
-    UNFELT,
+    PATH,
     Metric,
     Point,
     Steps,
@@ -33,8 +32,29 @@ from halfspace.errors import NotConverged
 from halfspace.roots import root
 from halfspace.values import Array, Valued
 
-ARCLENGTH_TOLERANCE = 1e-12
 ROUND_OFF = 1e-11  # what Newton's method, root finder and matrices leave, relative to 1 + the sizes of the terms
+
+
+@dataclass(frozen=True)
+class ConditionSettings:
+    """Numbers by which states that meet a condition are searched."""
+
+    shortest: float = 1e-12  # arclength to which a root is known
+    shorter: int = 4  # steps in the place of one that hides a pair of roots
+    leap: float = 1e-3  # of what should vanish, in its largest value around: more is left where states leap
+    long: float = 0.05  # arclength in which a rate that nearly vanishes at an end may do so twice
+    solved: float = 3e-9  # relative size of the last step: after 1e-8 loads that should be zero were up to 3e-11
+    nearby: float = 0.3  # arclength within which an event is looked for on another discretisation at once
+    trials: int = 4  # steps to beyond an event
+    past: float = 1.5  # how far past it they aim, in secants
+    longer: float = 3.0  # how many times the last a step may be
+    widths: tuple[float, ...] = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
+    feet: int = 8  # steps to the foot of a perpendicular
+    across: float = 1e-3  # of its length, what is left along the path
+    aslant: float = 0.1  # of its length, what may be left after so many steps: it is 0.005 longer then
+
+
+LOCATE = ConditionSettings()
 
 
 @dataclass(frozen=True)
@@ -155,15 +175,12 @@ def seen_from(a: Point, b: Point, metric: Metric) -> Point:
 
 def wound(problem: Traceable, a: Point, b: Point, metric: Metric) -> list[Point]:
     """Points from one to the first past another, by shorter steps, where the curve winds too much for one."""
-    step, past = (b.arclength - a.arclength) / SHORTER, metric.weights * b.rates
+    step, past = (b.arclength - a.arclength) / LOCATE.shorter, metric.weights * b.rates
 
     def beyond(point: Point) -> bool:
         return bool(past[:3] @ (point.observables - b.observables)[:3] >= 0)
 
     return follow(problem, a, metric, beyond, steps=Steps(first=step, longest=step))
-
-
-SHORTER = 4  # steps in the place of one
 
 
 def _may_hide(a: Point, b: Point, condition: Condition, metric: Metric) -> bool:
@@ -174,18 +191,14 @@ def _may_hide(a: Point, b: Point, condition: Condition, metric: Metric) -> bool:
     mean = (condition.level(b) - condition.level(a)) / length
     if condition.observable == LOAD and grows_from_afar(*(slope / metric.load for slope in (first, last, mean))):
         return False
-    little = NEARLY * max(abs(first), abs(last))
+    little = PATH.nearly * max(abs(first), abs(last))
     inside = least_slope(first, last, mean)
-    return inside < little or (length > LONG and min(abs(first), abs(last)) < little)
+    return inside < little or (length > LOCATE.long and min(abs(first), abs(last)) < little)
 
 
 def _unfelt(a: Point, b: Point, condition: Condition) -> bool:
     """Whether what should be stationary between two points is nothing at all at both."""
-    return condition.stationary and max(abs(condition.of(a)), abs(condition.of(b))) < UNFELT
-
-
-LEAP = 1e-3  # of what should vanish at a root in its largest value around: more is left where states leap
-LONG = 0.05  # arclength
+    return condition.stationary and max(abs(condition.of(a)), abs(condition.of(b))) < PATH.unfelt
 
 
 def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
@@ -227,15 +240,12 @@ def _solved(
         solution, slope = turn.solution, turn.slope
     else:
         control = Control(condition.weights, condition.value)
-        solution, slope = newton.solve(problem, start, control, tolerance=SOLVED), None
+        solution, slope = newton.solve(problem, start, control, tolerance=LOCATE.solved), None
     used = direction != 0
     step = float(direction[used] @ (solution.observables - near.observables)[used])
     point = make_point(problem, solution, metric, direction, near.arclength + step)
     far = metric.distance(point, near) > reach or metric.along(near, point) <= 0
     return None if far else Located(condition, problem, point, condition.rate(point) if slope is None else slope)
-
-
-SOLVED = 3e-9  # relative size of the last step: after 1e-8, loads that should be zero were up to 3e-11
 
 
 def bracketed(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
@@ -250,8 +260,8 @@ def bracketed(problem: Traceable, a: Point, b: Point, condition: Condition, metr
             )
         return condition.of(trials[step])
 
-    step = root(quantity, 0.0, length, "an event; take a smaller rtol", xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
-    part = max(LEAP, 2 * ARCLENGTH_TOLERANCE / abs(length))  # what the root finder leaves of a short interval
+    step = root(quantity, 0.0, length, "an event; take a smaller rtol", xtol=LOCATE.shortest, rtol=1e-14)
+    part = max(LOCATE.leap, 2 * LOCATE.shortest / abs(length))  # what the root finder leaves of a short interval
     if abs(quantity(step)) > part * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
         raise NotConverged(
             f"an event near approach {a.observables[0]:.6g} eps, load {a.observables[1]:.6g} R dgamma is lost: states "
@@ -281,29 +291,26 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
     """
     condition = event.condition
     if isinstance(condition, Steepest):
-        return steepest_from(problem, same_place(event.point, problem, start, metric), metric, WIDTHS[1:])
+        return steepest_from(problem, same_place(event.point, problem, start, metric), metric, LOCATE.widths[1:])
     try:
-        found = _solved(problem, condition, start, metric, event.point, NEARBY)
+        found = _solved(problem, condition, start, metric, event.point, LOCATE.nearby)
     except NotConverged:
         found = None
     return found if found and found.slope * event.slope > 0 else _searched(event, problem, start, metric)
 
 
-NEARBY = 0.3  # arclength within which an event is looked for on another discretisation at once
-
-
 def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located:
     """Solve for an event farther off: in the plane across the path first, then along it to beyond the event."""
     condition, nearby = event.condition, same_place(event.point, problem, start, metric)
-    step = -PAST * condition.of(nearby) / event.slope
-    if abs(step) < ARCLENGTH_TOLERANCE:
+    step = -LOCATE.past * condition.of(nearby) / event.slope
+    if abs(step) < LOCATE.shortest:
         return Located(condition, problem, nearby, event.slope)
-    for _ in range(TRIALS):
+    for _ in range(LOCATE.trials):
         beyond = correct(problem, nearby, step, predict(problem, nearby, step), metric, iterations=20)
         left = condition.of(beyond) / condition.of(nearby)
         if left <= 0:
             return bracketed(problem, nearby, beyond, condition, metric)
-        step *= min(1 + PAST * left / (1 - left), LONGER) if left < 1 else LONGER  # as far past the secant's root
+        step *= min(1 + LOCATE.past * left / (1 - left), LOCATE.longer) if left < 1 else LOCATE.longer
     at = event.point.observables
     raise NotConverged(
         f"the event at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma is not found again on another grid; "
@@ -311,13 +318,7 @@ def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) 
     )
 
 
-TRIALS, PAST, LONGER = 4, 1.5, 3.0  # steps to beyond an event: how many, how far past it, how many times the last
-
-
-WIDTHS = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
-
-
-def steepest_from(problem: Traceable, point: Point, metric: Metric, widths: Sequence[float] = WIDTHS) -> Located:
+def steepest_from(problem: Traceable, point: Point, metric: Metric, widths: Sequence[float] = LOCATE.widths) -> Located:
     """Where the curve falls most steeply near a point: the least compliance, by parabolas ever narrower.
 
     NotConverged if there is no such place near.
@@ -351,16 +352,12 @@ def nearest(point: Point, problem: Traceable, start: Array, metric: Metric) -> P
     control = Control(np.eye(4)[k], float(point.observables[k]))
     onwards = math.copysign(1.0, point.rates[k]) * control.weights
     near = make_point(problem, newton.solve(problem, start, control), metric, onwards, point.arclength)
-    for _ in range(FEET):
+    for _ in range(LOCATE.feet):
         step = float((metric.weights * near.rates)[:3] @ (point.observables - near.observables)[:3])
         far = metric.distance(point, near)
-        if abs(step) < far * ACROSS:
+        if abs(step) < far * LOCATE.across:
             break
         near = correct(problem, near, step, predict(problem, near, step), metric, iterations=20)
-    if abs(step) > far * ASLANT:
+    if abs(step) > far * LOCATE.aslant:
         raise NotConverged("no state on another grid is nearest to one of the curve's; take a smaller rtol")
     return replace(near, arclength=point.arclength)
-
-
-FEET = 8  # steps to the foot of a perpendicular
-ACROSS, ASLANT = 1e-3, 0.1  # of its length, what is left along the path, and what may be after so many: 0.005 longer

@@ -18,12 +18,25 @@ from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS,
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued, appended
 
-GROWTH = 10.0  # of the relative residual, let through in one step
-ROUND_OFF = 1e-10  # relative size of a step below which the residual may be no more than rounding
-SLOW = 0.1  # part of a step that may be left after one with old factors; if it is more, they are made anew
-ROUGH = 3e-2  # relative accuracy of a first step that is iterated for; of a later one the square of that before
-LEFT = 1e-4  # of the tolerance: error left by the last step, of either kind; the least of any step that is iterated for
-REFINED = 1e-13  # relative error left in a tangent
+
+@dataclass(frozen=True)
+class NewtonSettings:
+    """Numbers of Newton's method and of what follows from its last factors."""
+
+    growth: float = 10.0  # of the relative residual, let through in one step
+    round_off: float = 1e-10  # relative size of a step below which the residual may be no more than rounding
+    slow: float = 0.1  # part of a step that may be left after one with old factors; if more, they are made anew
+    rough: float = 3e-2  # relative accuracy of a first step that is iterated for; later the square of that before
+    left: float = 1e-4  # of the tolerance: error left by the last step; the least of any step that is iterated for
+    refined: float = 1e-13  # relative error left in a tangent
+    refinements: int = 4  # of a tangent by old factors, before they are made anew
+    turns: int = 12  # steps towards a turning point
+    astray: float = 0.01  # relative size of a step to the path, from where it cannot be told how the path goes
+    turned: float = 1e-7  # relative size of the last of them: what it leaves goes as its square
+    little: float = 1e-6  # relative size of a change by which a derivative is taken
+
+
+NEWTON = NewtonSettings()
 
 
 class Equilibrium(Protocol):
@@ -164,7 +177,7 @@ class Solution(Valued):
     """A converged state x, its observables (4,), approach, load, central gap and contact radius, and its control.
 
     The update is the relative size of the last Newton step; the error left is of the order of its square, or less than
-    `LEFT` of the tolerance. Astray is that of the first, by how much the start was off. The solver is for the
+    `NEWTON.left` of the tolerance. Astray is that of the first, by how much the start was off. The solver is for the
     linearised equations, bordered by the control, at the state or very near to it.
     """
 
@@ -203,15 +216,15 @@ def solve(
     for iteration in range(1, max_iterations + 1):
         fresh = solver is None
         solver = solver or problem.bordered_solver(x, problem.gradient(x, control.weights))
-        accuracy = LEFT if problem.reuse else min(max(before**2, LEFT), ROUGH)
+        accuracy = NEWTON.left if problem.reuse else min(max(before**2, NEWTON.left), NEWTON.rough)
         dx = -solver(F, accuracy)
         update = problem.size(x, dx)
         astray = astray or update
         x, F, damping = _damped(problem, x, F, dx, control)
         left = update * min(1.0, max(update, accuracy) if fresh else update / before)
-        if damping == 1 and update < tolerance and left < LEFT * tolerance:
+        if damping == 1 and update < tolerance and left < NEWTON.left * tolerance:
             return Solution(x, problem.observables(x), iteration, update, control, solver, astray)
-        if damping < 1 or update > problem.reuse or (not fresh and update > SLOW * before):
+        if damping < 1 or update > problem.reuse or (not fresh and update > NEWTON.slow * before):
             solver = None
         if update > contraction * last:
             break
@@ -232,17 +245,14 @@ def tangent(problem: Equilibrium, solution: Solution) -> Array:
     if not problem.reuse:
         return solution.solver(unit)
     t, before = solution.solver(unit), 1.0
-    for _ in range(REFINEMENTS):
+    for _ in range(NEWTON.refinements):
         change = solution.solver(unit - appended(problem.along(solution.x, t), float(row @ t)))
         t = t + change
         size = math.sqrt(float(change @ change) / float(t @ t))
-        if size * min(1.0, size / before) < REFINED:
+        if size * min(1.0, size / before) < NEWTON.refined:
             return t
         before = size
     return problem.bordered_solver(solution.x, row)(unit)
-
-
-REFINEMENTS = 4  # of a tangent by old factors, before they are made anew
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -262,10 +272,10 @@ def turning_point(problem: Equilibrium, start: Array, weights: Array, direction:
     so near.
     """
     x = start
-    for iteration in range(1, TURNS + 1):
+    for iteration in range(1, NEWTON.turns + 1):
         here = _Tangent(problem, x, weights, direction)
-        dx = -here.solver(appended(problem.residual(x), 0.0), LEFT)  # towards the path, across it
-        near = problem.size(x, dx) < ASTRAY
+        dx = -here.solver(appended(problem.residual(x), 0.0), NEWTON.left)  # towards the path, across it
+        near = problem.size(x, dx) < NEWTON.astray
         if near:
             slope, bend = here.changes(here.tangent)
             step = -(here.rate + here.changes(dx)[0]) / slope if slope else np.inf
@@ -274,16 +284,10 @@ def turning_point(problem: Equilibrium, start: Array, weights: Array, direction:
             dx = dx + step * here.tangent + step**2 / 2 * bend
         update, damping = problem.size(x, dx), problem.longest_step(x, dx)
         x = x + damping * dx
-        if near and damping == 1 and update < TURNED:
+        if near and damping == 1 and update < NEWTON.turned:
             control = Control(direction, 0.0)
             return Turn(Solution(x, problem.observables(x), iteration, update, control, here.solver), slope)
     raise NotConverged("the path does not turn here; take a smaller rtol")
-
-
-TURNS = 12  # steps towards a turning point
-ASTRAY = 0.01  # relative size of a step to the path, from where it cannot be told how the path goes
-TURNED = 1e-7  # relative size of the last of them: what it leaves goes as its square
-LITTLE = 1e-6  # relative size of a change by which a derivative is taken
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -317,10 +321,10 @@ class _Tangent(Valued):
         size = self.problem.size(self.x, v)
         if not size:
             return 0.0, np.zeros_like(v)
-        h, t = LITTLE / size, self.tangent
+        h, t = NEWTON.little / size, self.tangent
         beside = self.x + h * v
         bordered = appended(self.problem.along(beside, t), float(self.problem.gradient(beside, self.direction) @ t))
-        turned = -self.solver(bordered - _last(t.size), LEFT) / h
+        turned = -self.solver(bordered - _last(t.size), NEWTON.left) / h
         own = (self.problem.gradient(beside, self.weights) - self.gradient) @ t / h
         return float(own + self.gradient @ turned), turned
 
@@ -343,7 +347,7 @@ def _damped(problem: Equilibrium, x: Array, F: Array, dx: Array, control: Contro
     while damping > 1e-4:
         trial = x + damping * dx
         F = _equations(problem, trial, control)
-        if _misfit(problem, x, F) <= GROWTH * merit or problem.size(x, dx) < ROUND_OFF:
+        if _misfit(problem, x, F) <= NEWTON.growth * merit or problem.size(x, dx) < NEWTON.round_off:
             return trial, F, damping
         damping /= 2
     raise NotConverged(

@@ -23,6 +23,25 @@ from halfspace.values import Array, Valued
 
 
 @dataclass(frozen=True)
+class PathSettings:
+    """Numbers by which steps along the path are begun, refused and made longer."""
+
+    nudge: float = 1e-3  # of arclength: a step too short for the contact edge to leave its place
+    unfelt: float = 1e-8  # eps or R dgamma in the arclength 1: so far apart that an exponential law is all but nothing
+    nearly: float = 0.2  # of the larger of two slopes: one that nearly vanishes
+    faint: float = 0.1  # slope in the metric's units, of which the observable is but a tenth of the path
+    like: float = 0.8  # of an exponential's mean slope, or as much above; a power law's is 0.9 where it grows eightfold
+    turning_margin: float = 0.3  # of the step's length, by which slopes inside it clear zero
+    short: float = 0.1  # a step below which the cubic errs by far less than that
+    straight: float = 1e-10  # of the slopes: a bend that is rounding
+    ratio: float = 4.0  # of a gap to the step by which it closes at most, where that is longer than the longest
+    known: int = 3  # states through which the next is extrapolated
+
+
+PATH = PathSettings()
+
+
+@dataclass(frozen=True)
 class Metric:
     """Units of approach, load and central gap in which the arclength is measured."""
 
@@ -160,9 +179,6 @@ def _bend(before: Point, point: Point, step: float, metric: Metric) -> Array:
     return np.asarray(ahead * (first + 2 * last - 3 * mean + ahead * (first + last - 2 * mean)))
 
 
-NUDGE = 1e-3  # of arclength: a step too short for the contact edge to leave its place
-
-
 def _starts(
     problem: Traceable, points: list[Point], step: float, metric: Metric, trail: Sequence[Passed]
 ) -> Iterator[Array]:
@@ -172,7 +188,7 @@ def _starts(
     trail is of the states passed, on whatever grid, down to that of the last point.
     """
     point = points[-1]
-    if problem.interface is not problem and step > NUDGE:
+    if problem.interface is not problem and step > PATH.nudge:
         moved = with_edge(problem, trail, point.x, point.arclength + step)
         if moved is not None:
             yield moved
@@ -196,7 +212,7 @@ def follow(
     GridTooCoarse if the contact edge comes to a place where the grid is too coarse for the spike of tension there.
     """
     steps = steps or (Steps() if problem.interface is problem else WHOLE_BODY)
-    points, trail = [start], deque([*trail, passed(problem, start.x, start.arclength)], KNOWN)
+    points, trail = [start], deque([*trail, passed(problem, start.x, start.arclength)], PATH.known)
     step = steps.first
     while len(points) < max_points:
         try:
@@ -269,32 +285,22 @@ def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
     No more than a part of the larger slope at the ends is asked for, since curves of soft bodies wind in little; and
     nothing of a load that is faint and grows as an exponential, from afar: a cubic dips there, which it does not.
     """
-    if max(abs(a.rates[k]), abs(b.rates[k])) < UNFELT:
+    if max(abs(a.rates[k]), abs(b.rates[k])) < PATH.unfelt:
         return False
     length, unit = b.arclength - a.arclength, math.sqrt(metric.weights[k])
     first, last = unit * float(a.rates[k]), unit * float(b.rates[k])
     mean = unit * float(b.observables[k] - a.observables[k]) / length
     if k == LOAD and grows_from_afar(first, last, mean):
         return False
-    margin = TURNING_MARGIN * length * min(1.0, length / SHORT)
-    return least_slope(first, last, mean) < min(margin, NEARLY * max(abs(first), abs(last)))
-
-
-UNFELT = 1e-8  # eps or R dgamma in the arclength 1: surfaces so far apart that an exponential law is all but nothing
-NEARLY = 0.2  # of the larger of two slopes: one that nearly vanishes
-FAINT = 0.1  # slope in the metric's units, of which the observable is but a tenth of the path
-LIKE = 0.8  # of an exponential's mean slope, or as much above: a power law's is 0.9 of it where it grows eightfold
-TURNING_MARGIN, SHORT = 0.3, 0.1  # of the step's length; a step below which the cubic errs by far less than that
+    margin = PATH.turning_margin * length * min(1.0, length / PATH.short)
+    return least_slope(first, last, mean) < min(margin, PATH.nearly * max(abs(first), abs(last)))
 
 
 def grows_from_afar(first: float, last: float, mean: float) -> bool:
     """Whether a slope, in the metric's units, is faint and its mean about that of an exponential, the logarithmic."""
-    if max(abs(first), abs(last)) >= FAINT or first * last <= 0 or first == last:
+    if max(abs(first), abs(last)) >= PATH.faint or first * last <= 0 or first == last:
         return False
-    return LIKE < mean * math.log(last / first) / (last - first) < 1 / LIKE
-
-
-STRAIGHT = 1e-10  # of the slopes: a bend that is rounding
+    return PATH.like < mean * math.log(last / first) / (last - first) < 1 / PATH.like
 
 
 def least_slope(first: float, last: float, mean: float) -> float:
@@ -306,7 +312,7 @@ def least_slope(first: float, last: float, mean: float) -> float:
     if first * last <= 0:
         return float("inf")
     bend = 6 * (first + last) - 12 * mean
-    straight = abs(bend) <= STRAIGHT * abs(first + last)
+    straight = abs(bend) <= PATH.straight * abs(first + last)
     t = 0.0 if straight else (4 * first + 2 * last - 6 * mean) / bend
     if not 0 < t < 1:
         return float("inf")
@@ -327,11 +333,8 @@ def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -
     by_turn = steps.turn / max(_turn(points[-2], points[-1], metric), 1e-6)
     by_astray = math.sqrt(math.sqrt(steps.astray / max(points[-1].astray, 1e-12)))
     by_effort = min(steps.usual / points[-1].iterations, by_astray)
-    wide = (1 + float(points[-1].observables[CENTRAL_GAP])) / (RATIO * metric.central_gap)
+    wide = (1 + float(points[-1].observables[CENTRAL_GAP])) / (PATH.ratio * metric.central_gap)
     return min(step * min(max(by_turn, 0.3), max(by_effort, 0.3), 2.0), steps.longest * max(1.0, wide))
-
-
-RATIO = 4.0  # of a gap to the step by which it closes at most, where that is longer than the longest
 
 
 def loaded_to(load: float) -> Callable[[Point], bool]:
@@ -342,8 +345,6 @@ def loaded_to(load: float) -> Callable[[Point], bool]:
 # The next state where the contact edge runs over a grid that stands still, and with it the spike of tension. At a fixed
 # place gaps bend as sharply as the spike is narrow; seen from the edge they change as smoothly as the radius of the
 # contact. So they are extrapolated there, through the last states, and the body is asked for what lies below.
-
-KNOWN = 3  # states through which the next is extrapolated
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -373,7 +374,7 @@ def passed(problem: Traceable, x: Array, arclength: float) -> Passed:
 
 def with_edge(problem: Traceable, trail: Sequence[Passed], near: Array, arclength: float) -> Array | None:
     """State at an arclength beyond the last of those passed, near that; None unless two have a contact."""
-    known = [state for state in trail if state.radius > 0][-KNOWN:]  # nor nan
+    known = [state for state in trail if state.radius > 0][-PATH.known :]  # nor nan
     if len(known) < 2 or not trail[-1].radius > 0:
         return None
     weights = polynomial(np.array([state.arclength for state in known]), arclength)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 from typing import NoReturn
 
@@ -33,6 +34,21 @@ from halfspace.errors import ContactTooWide, NotConverged
 from halfspace.scales import BRADLEY
 
 Bracket = tuple[Traceable, Point, Point]
+
+
+@dataclass(frozen=True)
+class SearchSettings:
+    """Numbers by which the events of a curve are searched."""
+
+    behind: tuple[float, float] = (1e-6, 0.1)  # arclengths by which one discretisation may be behind another
+    deep: float = 0.1  # of the deepest load by the cubics: others as deep are solved for as well
+    same: float = 1e-6  # of approach, load and central gap, what two turns differ by where they are two
+    in_doubt: float = 0.02  # eps/(R dgamma), a least -d(alpha*)/dW: the Tabor parameter is 0.65 to 0.74 then
+    astray: float = 0.1  # of a compliance in doubt, by which the curve's is another than that of the cubics to rely on
+    most: int = 40  # points put between those of a curve
+
+
+FIND = SearchSettings()
 
 
 def states(segments: Sequence[Segment], condition: Condition, known: Iterable[Located] = ()) -> list[Located]:
@@ -72,15 +88,12 @@ def _to_hand_over(segment: Segment, after: Segment | None, condition: Condition,
     last, problem = segment.points[-1], segment.problem
     if after is None or (condition.of(last) < 0) == (condition.of(after.points[0]) < 0):
         return segment.points
-    for step in np.geomspace(SHORTEST, LONGEST, 8):
+    for step in np.geomspace(*FIND.behind, 8):
         with suppress(NotConverged):
             point = correct(problem, last, step, predict(problem, last, step), metric, iterations=20)
             if (condition.of(point) < 0) != (condition.of(last) < 0):
                 return (*segment.points, point)
     return segment.points
-
-
-SHORTEST, LONGEST = 1e-6, 0.1  # arclengths by which one discretisation may be behind another
 
 
 def _state(bracket: Bracket, condition: Condition) -> Located:
@@ -91,7 +104,9 @@ def _state(bracket: Bracket, condition: Condition) -> Located:
 def _deepest(brackets: Sequence[Bracket]) -> Located:
     """Of the extrema of the load the deepest, where the cubics through the points beside it do not leave it open."""
     expected = sorted((_least_load(a, b), i) for i, (_, a, b) in enumerate(brackets))
-    found = [_state(brackets[i], EXTREMUM) for low, i in expected if low <= expected[0][0] + DEEP * abs(expected[0][0])]
+    found = [
+        _state(brackets[i], EXTREMUM) for low, i in expected if low <= expected[0][0] + FIND.deep * abs(expected[0][0])
+    ]
     return min(found, key=lambda e: float(e.point.observables[LOAD]))
 
 
@@ -101,9 +116,6 @@ def _least_load(a: Point, b: Point) -> float:
     (f, df), (g, dg) = ((float(p.observables[LOAD]), h * float(p.rates[LOAD])) for p in (a, b))
     cubic = f + t**2 * (3 - 2 * t) * (g - f) + t * (1 - t) * ((1 - t) * df - t * dg)
     return float(np.min(cubic))
-
-
-DEEP = 0.1  # of the deepest load by the cubics: others as deep are solved for as well
 
 
 def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
@@ -205,10 +217,7 @@ def confirmed(
 def _same_turn(a: Located, b: Located) -> bool:
     """Whether two turns of an observable are one and the same."""
     first, second = a.point.observables[:CONTACT_RADIUS], b.point.observables[:CONTACT_RADIUS]
-    return bool(np.all(np.abs(first - second) < SAME * (1 + np.abs(second))))
-
-
-SAME = 1e-6  # of approach, load and central gap, what two turns differ by where they are two
+    return bool(np.all(np.abs(first - second) < FIND.same * (1 + np.abs(second))))
 
 
 def _missing(segment: Segment, event: str) -> NoReturn:
@@ -250,30 +259,21 @@ def _least_compliance(a: Point, b: Point) -> tuple[float, float]:
     return float(compliances[least]), float(t[least])
 
 
-# eps/(R dgamma), of the least -d(alpha*)/dW between points: the Tabor parameter of a paraboloid is then 0.65 to 0.74;
-# of another profile as much less as its tensions are larger
-IN_DOUBT = 0.02
-
-
 def folds_in_doubt(segments: Sequence[Segment]) -> dict[str, Located]:
     """Where the curve falls most steeply, if two folds there are about to merge or to be born; nothing otherwise."""
     metric = metric_for(segments[0].problem)
-    in_doubt = IN_DOUBT * BRADLEY / metric.load
+    in_doubt = FIND.in_doubt * BRADLEY / metric.load
     falls = [(*_least_compliance(a, b), s.problem, a, b) for s in segments for a, b in pairwise(s.points)]
-    for _ in range(MOST):
+    for _ in range(FIND.most):
         fall = min(falls, key=lambda one: one[0])
         least, part, problem, a, b = fall
         if abs(least) >= in_doubt:
             return {}
         step = part * (b.arclength - a.arclength)
         point = correct(problem, a, step, hermite(problem, a, b, part, metric), metric, iterations=20) if step else a
-        if abs(STEEPEST.of(point) - least) < ASTRAY * in_doubt:
+        if abs(STEEPEST.of(point) - least) < FIND.astray * in_doubt:
             return {"steepest": steepest_from(problem, point, metric)}
         falls.remove(fall)  # the curve does not fall as steeply there as the cubics have it
         pairs = (a, point), (point, seen_from(point, b, metric))
         falls += [(*_least_compliance(c, d), problem, c, d) for c, d in pairs]
     raise NotConverged("where the curve falls most steeply is not found; take a smaller rtol")
-
-
-ASTRAY = 0.1  # of a compliance in doubt, by which the curve's is another than that of the cubics to rely on
-MOST = 40  # points put between those of a curve

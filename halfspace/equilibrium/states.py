@@ -23,7 +23,7 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Stage, placed, settled
 from halfspace.equilibrium.conditions import (
     FOLD,
-    NEARBY,
+    LOCATE,
     Condition,
     Located,
     between,
@@ -258,7 +258,7 @@ class FinestCurve(Valued):
         nearest = [(part, min(part.points, key=lambda p: abs(condition.of(p)))) for part in parts]
         nearest.sort(key=lambda one: (self._is_left_behind(one[0].problem), abs(condition.of(one[1]))))
         gaps = [self.metric.distance(a.points[-1], b.points[0]) for a, b in pairwise(parts)]
-        reach, (*others, (part, near)) = max([NEARBY, *gaps]), nearest
+        reach, (*others, (part, near)) = max([LOCATE.nearby, *gaps]), nearest
         for other, point in others:
             try:
                 return other.problem, self._beside(other.problem, point, condition, reach), 0.0

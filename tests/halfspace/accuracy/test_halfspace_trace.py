@@ -12,6 +12,7 @@ from references import charted_rung
 
 import halfspace
 from fem_adhesion.common.fold_birth import critical_stiffness
+from halfspace.accuracy.finite_bodies import ChartSettings
 from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.elastic.kernel import RingRules
@@ -311,7 +312,7 @@ def test_the_last_rung_that_fits_memory_has_its_errors(monkeypatch):
     lowest, highest = (full.settings[rung]["nodes"] for rung in ("curve", "events"))
     assert highest > lowest + 1
     monkeypatch.setattr(halfspace.elastic.kernel, "RULES", RingRules(largest=2e6))
-    monkeypatch.setattr(halfspace.accuracy.finite_bodies, "TOGETHER", 1)  # lest the curve take most
+    monkeypatch.setattr(halfspace.accuracy.finite_bodies, "CHARTS", ChartSettings(together=1))  # the curve takes less
     path = halfspace.trace(5.0, **asked)
     assert lowest < path.settings["events"]["nodes"] < highest
     assert path.missed
