@@ -45,6 +45,8 @@ class ChartSettings:
     equal: int = 3  # cells of equal length on the axis, which carry a contact wherever it ends in them
     leave: float = 0.8  # of these cells: the contact radius at which the curve leaves the chart on the axis
     events: float = 1.0  # cells: the radius at which an event does
+    farther: float = 2.0  # times the widest contact that is planned for, as a rigid one on a blunt cone is
+    nearly: float = 0.99  # of a body, which the last point of a curve may be as wide as
     most: int = 16  # operators in a part of a chart: each state combines them all
     together: int = 4  # grids integrated at once: with all of a curve's it took 0.18 GB more, and no less time
     across: float = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
@@ -143,19 +145,18 @@ class SizedBody(Valued):
             require_stored(len(lines), made[0][0].radii.size)
         return made
 
-    @property
-    def radii_of_curve(self) -> tuple[float, float]:
-        """Least and widest contact radius of charts for the whole curve that follow the contact."""
-        widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * self.scales.profile.end)
-        return min(self.leave, widest / 2), widest
-
     def curve(self, error: float = CHARTS.roughly) -> tuple[Chart, Chart]:
         """Charts for the whole curve; that which follows the contact errs by so much in loads, R dgamma, or gaps, eps.
 
-        Narrow parts of few operators each serve wide ranges of contact radii: only those that are met are made.
+        Narrow parts of few operators each serve wide ranges of contact radii: only those that are met are made. There
+        are some for contacts wider than is planned for, as that of a rigid body may be: beyond its ends a polynomial
+        leaves any error.
         """
-        ends, counts = self._parts(*self.radii_of_curve, error)
-        return self.centred(), self.over(ends, counts)
+        body, end = self.scales.profile.end, float(self.coordinate.radius(CHARTS.nearly * self.outer[:1])[0][0])
+        widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * body)
+        farther = max(widest, min(CHARTS.farther * widest, CHARTS.nearly * body, end))
+        ends, counts = self._parts(min(self.leave, widest / 2), farther, error)
+        return self.centred(), self.over(ends, counts, widest)
 
     def _parts(self, least: float, most: float, error: float) -> tuple[list[float], list[int]]:
         """Ends of the parts of a range of contact radii, halved until none takes more than `most`, and operators."""
@@ -165,21 +166,22 @@ class SizedBody(Valued):
         (below, few), (above, more) = (self._parts(*half, error) for half in ((least, middle), (middle, most)))
         return below + above[1:], few + more
 
-    def over(self, ends: Sequence[float], counts: Sequence[int]) -> Chart:
+    def over(self, ends: Sequence[float], counts: Sequence[int], widest: float) -> Chart:
         """Chart that follows the contact edge, in parts between contact radii (k + 1,), from so many operators (k,).
 
         It is fine enough for all: the cells inside the edge are twice as long as those outside where the contact is
-        widest, and shorter where it is narrower.
+        as wide as is planned for, and shorter where it is narrower.
         """
         x = [self.coordinate.of(a) for a in ends]
-        rest = self._end_beyond(x[-1]) - x[0]
-        inner = 1 - grid.geometric(1.0, 2 * self.length / x[-1], self._growth)[::-1]
-        inner = grid.towards_axis(inner, self.first / ends[-1], self._growth)
+        edge = self.coordinate.of(widest)
+        rest = self._end_beyond(edge) - x[0]
+        inner = 1 - grid.geometric(1.0, 2 * self.length / edge, self._growth)[::-1]
+        inner = grid.towards_axis(inner, self.first / widest, self._growth)
         moving = self._moving(inner, grid.geometric(rest, self.length, self._growth, self.last) / rest)
         lengths = [chebyshev_lengths(*between, count) for between, count in zip(pairwise(x), counts, strict=True)]
         parts = [Part(edges, partial(_kernels, self, moving, edges)) for edges in lengths]
-        made = self.made(moving.lines_at(lengths[-1]))
-        parts[-1].knowing(kernels_of([operator for operator, _ in made]))
+        made = self.made(moving.lines_at(lengths[0]))
+        parts[0].knowing(kernels_of([operator for operator, _ in made]))
         operator = Interpolated(Piecewise(np.array(x), parts), made[0][0].cell_nodes, moving)
         return Chart(contact_of(self.scales, operator), made[0][1])
 

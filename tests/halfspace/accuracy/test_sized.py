@@ -211,7 +211,9 @@ def test_points_of_a_curve_have_no_more_operators_than_rounding_lets_tell_apart(
     """On a high rung there were two thousand, whose polynomial overflowed: at `rtol=1e-9` a curve had no points."""
     body = under_sphere(Scales(1.0, profile=between_spheres(np.sqrt(30.0), np.inf)), resolution_for(SCALES, 1e-3))
     operator = body.curve(left_between(16))[1].problem.operator
-    assert sum(part.lengths.size for part in operator.kernel.parts) < 80
+    assert (
+        sum(part.lengths.size for part in operator.kernel.parts) < 150
+    )  # those of parts that no state meets are not made
     a = float(np.sqrt(operator.kernel.parts[0].lengths[[3, 4]].prod()))
     exact = body.together(operator.grid.lines(a)[None])[0][0]
     assert operator.at(a).compliance == pytest.approx(exact.compliance, rel=0, abs=1e-11 * np.max(exact.compliance))
@@ -227,7 +229,7 @@ def test_an_operator_across_events_errs_as_the_number_it_was_made_for_says(windo
     errors = {}
     for rtol in (1e-3, 1e-5):
         span = 1.2 * np.exp(-window), 1.2 * np.exp(window)
-        operator = body.over(span, [body.operators_between(*span, rtol)]).problem.operator
+        operator = body.over(span, [body.operators_between(*span, rtol)], span[1]).problem.operator
         a = 1.2 * np.exp(0.95 * window)
         exact = body.make(operator.grid.lines(a))[0]
         pressure = np.exp(-(exact.radii**2))
@@ -240,7 +242,7 @@ def test_an_operator_across_events_errs_as_the_number_it_was_made_for_says(windo
 def test_meshes_for_one_chart_have_the_same_cells(tabor, ratio):
     """By a layer of cells more or less the operators would differ by 1e-7, and so would what lies between them."""
     body = sized_body(Scene(tabor, Hemisphere(radius_ratio=ratio)), Discretisation(6))
-    operator = body.over((0.9, 1.6), [9]).problem.operator
+    operator = body.over((0.9, 1.6), [9], 1.6).problem.operator
     assert len({body.make(operator.grid.lines(a))[1] for a in operator.scales}) == 1
     exact = body.make(operator.grid.lines(1.3))[0]
     pressure = np.exp(-(exact.radii**2))
