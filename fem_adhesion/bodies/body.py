@@ -61,8 +61,28 @@ class Discretisation:
     refined: int = 0
 
 
+class Known:
+    """What others ask a body for: it follows from what the body is made from, and is known once it is made.
+
+    R is the body's own radius of curvature at the pole.
+    """
+
+    words: list[str]  # what it is, in words
+    held: FarFieldName = "point_load"  # what holds its far boundary
+    regions: tuple[Elastic, ...]  # materials from the surface down, as in its mesh; most bodies have one
+    interfaces: tuple[float, ...] = ()  # depths in beta at which one region ends
+    beyond: Elastic  # what it goes on as beyond its mesh, if it does
+    size: float = math.inf  # R/eps, infinite of a flat surface
+    shape: Profile = PARABOLOID  # profile of a contact with it
+    layered: LayeredBody | None = None  # strata on a base, see `halfspace.elastic.layers`
+    cut_off: float | None = None  # its size in beta if it is cut off under an endless surface
+    file: Path | None = None  # its mesh, if it is given; other bodies are meshed anew for every contact radius
+    checked_by: SolverName | None = None  # solver without finite elements, see `fem_adhesion.crosscheck.references`
+    doubt = Doubt(other_cells=False)  # how far its cells are to be trusted
+
+
 @dataclass(frozen=True, kw_only=True)
-class Body(ABC):
+class Body(Known, ABC):
     """An elastic body of revolution, below its contact surface, with all of the pair's compliance 1/E* unless shared.
 
     `poisson` is short for ``material=LinearElastic(poisson)``; to be read as ``body.material.poisson``.
@@ -80,7 +100,12 @@ class Body(ABC):
     looks: ClassVar[str] = "elastic body"  # what a picture of it shows
 
     def __post_init__(self, poisson: float | None) -> None:
-        self._take(poisson)
+        if poisson is not None and self.material is USUAL:
+            keep(self, material=LinearElastic(poisson))
+        elif poisson is not None and require_poisson(poisson) != self.material.poisson:
+            raise InputError(
+                f"poisson = {poisson:g} with material = {self.material}, limit: one of both; leave one out"
+            )
         if self.material.finite and not self.stretches:
             raise InputError(
                 f"material = {self.material} does not go with {self.name}; finite strain is for a hemisphere"
@@ -89,17 +114,8 @@ class Body(ABC):
             raise InputError(
                 f"traction = {self.material.traction} does not go with {self.name}; it differs on a curved surface only"
             )
-
-    def _take(self, poisson: float | None) -> None:
-        """Make a Poisson's ratio that is given in short the material's."""
-        if poisson is None:
-            return
-        if self.material is USUAL:
-            keep(self, material=LinearElastic(poisson))
-        elif require_poisson(poisson) != self.material.poisson:
-            raise InputError(
-                f"poisson = {poisson:g} with material = {self.material}, limit: one of both; leave one out"
-            )
+        own = Elastic(self.material.poisson)
+        keep(self, words=[self.name], regions=(own,), beyond=own)
 
     @property
     def name(self) -> str:
@@ -107,84 +123,15 @@ class Body(ABC):
         return name_of(self)
 
     @property
-    def words(self) -> list[str]:
-        """What it is, in words."""
-        return [self.name]
-
-    @property
-    @abstractmethod
-    def held(self) -> FarFieldName:
-        """What holds its far boundary."""
-
-    @property
-    def checked_by(self) -> SolverName | None:
-        """Solver without finite elements that knows the body, see `fem_adhesion.crosscheck.references`."""
-        return None
-
-    @property
-    def file(self) -> Path | None:
-        """Its mesh, if it is given; other bodies are meshed anew for every contact radius."""
-        return None
-
-    @property
     def endless(self) -> bool:
         """Whether it goes on beyond its mesh as a half-space does."""
         return self.held == "point_load"
-
-    @property
-    def singular(self) -> bool:
-        """Whether the stress is singular where it is held: a degree more does not tell the error there."""
-        return False
-
-    @property
-    def doubt(self) -> Doubt:
-        """How far its cells are to be trusted."""
-        return Doubt(self.singular)
-
-    @property
-    def regions(self) -> tuple[Elastic, ...]:
-        """What its regions are made of, from the surface down as in its mesh; most have one."""
-        return (Elastic(self.material.poisson),)
-
-    @property
-    def interfaces(self) -> list[float]:
-        """Depths in beta at which one region ends, and another begins or what holds them."""
-        return []
-
-    @property
-    def beyond(self) -> Elastic:
-        """What it goes on as beyond its mesh, if it does."""
-        return self.regions[-1]
-
-    @property
-    def size(self) -> float:
-        """R/eps, R being the radius of curvature at the pole; infinite of a flat surface."""
-        return math.inf
-
-    @property
-    def shape(self) -> Profile:
-        """Profile of a contact with it."""
-        return PARABOLOID
-
-    @property
-    def layered(self) -> LayeredBody | None:
-        """Strata on a base, if it is one; see `halfspace.elastic.layers`."""
-        return None
-
-    @property
-    def cut_off(self) -> float | None:
-        """Size in beta of a body that is cut off under an endless surface; None where the size is to be chosen."""
-        return None
-
-    def spread(self, R: float) -> float:
-        """Length in beta over which a half-space beyond is loaded, where the surface over it ends at R."""
-        return R
 
     def extent(self, scales: Scales) -> float:  # noqa: ARG002 (few are cut off)
         """Radius in beta at which its contact surface is cut off, where nothing attracts any more."""
         return math.inf
 
-    def check(self, tabor: float, end: float) -> None:  # noqa: B027 (most serve all)
+    def check(self, tabor: float, end: float) -> None:
         """Refuse a Tabor parameter, or a radius at which the surface over it ends, out of range; raise InputError."""
 
     @abstractmethod
@@ -223,16 +170,9 @@ class Held(Body):
         super().__post_init__(poisson)
         keep(self, radius_ratio=require_radius_ratio(self.radius_ratio))
         require_one_of(self.grip, "grip", get_args(GripName))
-
-    @property
-    def held(self) -> FarFieldName:
-        """Slides, or is clamped."""
-        return "clamped" if self.grip == "bonded" else "sliding"
-
-    @property
-    def words(self) -> list[str]:
-        """Its name and grip."""
-        return [*super().words, *(["bonded"] if self.grip == "bonded" else [])]
+        bonded = self.grip == "bonded"
+        keep(self, held="clamped" if bonded else "sliding", words=[*self.words, *(["bonded"] if bonded else [])])
+        keep(self, size=self.radius_ratio, shape=Sphere(self.radius_ratio))
 
     def rings(self, R: float, how: Discretisation) -> Array:  # noqa: ARG002 (most have none)
         """Sizes of the rings around the equator, in parts of the last cell."""
@@ -243,13 +183,3 @@ class Held(Body):
         from fem_adhesion.mesh.spheres import contact_ends
 
         return contact_ends(R, self.rings(R, how)), SurfaceCoordinate(R, self.material.area)
-
-    @property
-    def size(self) -> float:
-        """R/eps."""
-        return self.radius_ratio
-
-    @property
-    def shape(self) -> Profile:
-        """The sphere's."""
-        return Sphere(self.radius_ratio)

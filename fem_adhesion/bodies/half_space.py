@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
-from fem_adhesion.bodies.body import BESIDE, Body, Discretisation, FarFieldName, Layout, SolverName
+from fem_adhesion.bodies.body import BESIDE, Body, Discretisation, Layout
 from halfspace.elastic import grid
 from halfspace.elastic.grid import FLAT
 from halfspace.errors import InputError
@@ -22,15 +22,14 @@ BlockFarField = Literal["point_load", "clamped", "free"]
 class HalfSpace(Body):
     """Half-space, meshed as a block that goes on beyond its mesh as under a point load."""
 
+    checked_by = "half-space"
+
     faces: ClassVar[bool] = True
     looks: ClassVar[str] = "elastic half-space"
-    checked_by: ClassVar[SolverName] = "half-space"
-    held: ClassVar[FarFieldName] = "point_load"
 
-    @property
-    def words(self) -> list[str]:
-        """Nothing: it is the usual body."""
-        return []
+    def __post_init__(self, poisson: float | None) -> None:
+        super().__post_init__(poisson)
+        keep(self, words=[])  # it is the usual body
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Cells up to the end of the surface over it."""
@@ -78,23 +77,16 @@ class Block(Body):
     radius: float
     far_field: BlockFarField = "point_load"
 
+    checked_by = "half-space"
+
     looks: ClassVar[str] = "elastic block"
-    checked_by: ClassVar[SolverName] = "half-space"
 
     def __post_init__(self, poisson: float | None) -> None:
         super().__post_init__(poisson)
         keep(self, radius=require_radius(self.radius))
         require_one_of(self.far_field, "far_field", get_args(BlockFarField))
-
-    @property
-    def held(self) -> FarFieldName:
-        """Its far field."""
-        return self.far_field
-
-    @property
-    def words(self) -> list[str]:
-        """Its size, and what holds it."""
-        return [*super().words, f"size {self.radius:g} beta", *([] if self.endless else [self.far_field])]
+        keep(self, held=self.far_field, cut_off=self.radius)
+        keep(self, words=[*self.words, f"size {self.radius:g} beta", *([] if self.endless else [self.far_field])])
 
     def check(self, tabor: float, end: float) -> None:
         """Refuse a block smaller than its contact, one that needs a mesh too fine, or one under a sphere."""
@@ -103,11 +95,6 @@ class Block(Body):
         require_radius(self.radius, tabor)
         if not self.endless:
             require_fixed_mesh(tabor)
-
-    @property
-    def cut_off(self) -> float:
-        """Its size."""
-        return self.radius
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Its surface ends where it does."""

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fem_adhesion.bodies.body import Discretisation, Held, Layout, SolverName
+from fem_adhesion.bodies.body import Discretisation, Doubt, Held, Layout
 from halfspace.elastic.grid import FLAT
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, keep
@@ -26,16 +26,12 @@ class Hemisphere(Held):
     meets: ClassVar[bool] = True
     faces: ClassVar[bool] = True
 
-    @property
-    def checked_by(self) -> SolverName | None:
-        """Whole sphere by harmonics."""
+    def __post_init__(self, poisson: float | None) -> None:
+        super().__post_init__(poisson)
         linear = self.material.area == "projected" and not self.material.finite
-        return "harmonics" if self.grip == "sliding" and linear else None
-
-    @property
-    def singular(self) -> bool:
-        """Where the bonded mid-plane meets the free surface."""
-        return self.grip == "bonded"
+        # The whole sphere by harmonics; where a bonded mid-plane meets the free surface the stress is singular.
+        checked_by = "harmonics" if self.grip == "sliding" and linear else None
+        keep(self, checked_by=checked_by, doubt=Doubt(other_cells=self.grip == "bonded"))
 
     def rings(self, R: float, how: Discretisation) -> Array:  # noqa: ARG002 (in parts of the cells)
         """Sizes of the rings around the equator, where stress is singular if the mid-plane is bonded.
@@ -43,7 +39,7 @@ class Hemisphere(Held):
         There u ~ d^s, with d the distance and sin^2(s pi/2) = [4 (1 - nu)^2 - s^2]/(3 - 4 nu) (Williams 1952): s falls
         from 1 at nu = 0 to 0.6 at 1/2; each ring takes the error it leaves, as d^(2 s), down by a factor of 25 to 7.
         """
-        return np.asarray(0.2 ** np.arange(1.0, (how.rings if self.singular else 0) + 1))
+        return np.asarray(0.2 ** np.arange(1.0, (how.rings if self.grip == "bonded" else 0) + 1))
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact."""
@@ -69,19 +65,15 @@ class HeldSphere(Held):
     """
 
     cap_angle: float = 30.0
+    doubt = Doubt(other_cells=True)
 
     curved: ClassVar[bool] = True
     has_fields: ClassVar[bool] = False
-    singular: ClassVar[bool] = True
 
     def __post_init__(self, poisson: float | None) -> None:
         super().__post_init__(poisson)
         keep(self, cap_angle=require_cap_angle(self.cap_angle))
-
-    @property
-    def words(self) -> list[str]:
-        """Its cap too."""
-        return [*super().words, f"cap of {self.cap_angle:g} degrees"]
+        keep(self, words=[*self.words, f"cap of {self.cap_angle:g} degrees"])
 
     def rings(self, R: float, how: Discretisation) -> Array:  # noqa: ARG002 (they are the cap's)
         """Sizes of the rings around the equator, where the cap begins there or near it."""
@@ -112,17 +104,8 @@ class Meshed(Held):
 
     def __post_init__(self, poisson: float | None) -> None:
         super().__post_init__(poisson)
-        keep(self, path=Path(self.path))
-
-    @property
-    def file(self) -> Path:
-        """The mesh."""
-        return Path(self.path)
-
-    @property
-    def words(self) -> list[str]:
-        """The file, and its grip."""
-        return [str(self.path), *super().words[1:]]
+        path = Path(self.path)
+        keep(self, path=path, file=path, words=[str(path), *self.words[1:]])
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (it is as it is)
         """None: every cell stands still."""
@@ -132,7 +115,7 @@ class Meshed(Held):
         """Mesh of the file, every cell cut into four as often as `how` says."""
         from fem_adhesion.mesh.file import read_body, refined
 
-        mesh = read_body(self.file).scaled(R)
+        mesh = read_body(self.path).scaled(R)
         for _ in range(how.refined):
             mesh = refined(mesh)
         return mesh

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from typing import Any, ClassVar
 
 import numpy as np
 
-from fem_adhesion.bodies.body import BESIDE, USUAL, Body, Discretisation, Doubt, FarFieldName, Layout, SolverName
+from fem_adhesion.bodies.body import BESIDE, USUAL, Body, Discretisation, Doubt, Layout
 from fem_adhesion.materials import Elastic
 from halfspace.elastic import grid, layers
 from halfspace.elastic.grid import FLAT
@@ -32,58 +31,41 @@ DIED_OUT = 20.0
 SLENDER = 1e5
 
 
+class Strata:
+    """Strata as the integral equation asks for them, so that it takes these bodies as well."""
+
+    strata: tuple[layers.Stratum, ...]
+    base: layers.Foundation | layers.Substrate
+
+
 @dataclass(frozen=True, kw_only=True)
-class Stratified(Body):
+class Stratified(Strata, Body):
     """Strata on a rigid base or on a half-space; E* is that of the first."""
 
+    checked_by = "half-space"
+    # Cells that suit the edge of the contact may be long for the rest; twice a usual change may be left.
+    doubt = Doubt(other_cells=True, times=2.0)
+
     looks: ClassVar[str] = "elastic layer"
-    checked_by: ClassVar[SolverName] = "half-space"
-    doubt: ClassVar[Doubt] = Doubt(other_cells=True, times=2.0)
-    """Cells that suit the edge of the contact may be long for the rest; twice a usual change may be left."""
 
-    @property
-    def layered(self) -> layers.Layers:
-        """What the integral equation knows it as."""
-        raise NotImplementedError
+    def made_of(self, layered: layers.Layers) -> None:
+        """Fill in what follows from the strata as the integral equation has them.
 
-    @cached_property
-    def strata(self) -> tuple[layers.Stratum, ...]:
-        """As the integral equation asks for them, so that it takes this body as well."""
-        return self.layered.strata
-
-    @cached_property
-    def base(self) -> layers.Foundation | layers.Substrate:
-        """The same."""
-        return self.layered.base
-
-    @property
-    def held(self) -> FarFieldName:
-        """Its base is clamped, or slides and the strata go on beyond their edge, or is a half-space that goes on."""
-        if isinstance(self.base, layers.Substrate):
-            return "substrate"
-        return "clamped" if self.base == "bonded" else "sheet"
-
-    @property
-    def regions(self) -> tuple[Elastic, ...]:
-        """Of the strata, and of a half-space below."""
-        parts: list[layers.Stratum | layers.Substrate] = [*self.strata]
-        parts += [self.base] if isinstance(self.base, layers.Substrate) else []
-        unit = 1 - self.strata[0].poisson ** 2
-        return tuple(Elastic(part.poisson, part.modulus * unit / (1 - part.poisson**2)) for part in parts)
-
-    @property
-    def beyond(self) -> Elastic:
-        """The half-space, or of strata that slide one with the shear stiffness of all."""
-        if self.held == "substrate":
-            return self.regions[-1]
-        shear = [modulus * (1 - poisson) for poisson, modulus in self.regions]
-        whole = sum(G * stratum.thickness for G, stratum in zip(shear, self.strata, strict=True))
-        return Elastic(self.regions[0].poisson, whole / shear[0] / layers.total_thickness(self))
-
-    @property
-    def interfaces(self) -> list[float]:
-        """Depths at which strata end, in beta."""
-        return list(accumulate(stratum.thickness for stratum in self.strata))
+        A rigid base is clamped, or slides and the strata go on beyond their edge; a half-space goes on. Of strata that
+        slide, what goes on has the shear stiffness of all.
+        """
+        strata, base = layered.strata, layered.base
+        below = [base] if isinstance(base, layers.Substrate) else []
+        parts: list[layers.Stratum | layers.Substrate] = [*strata, *below]
+        held = "substrate" if below else "clamped" if base == "bonded" else "sheet"
+        unit = 1 - strata[0].poisson ** 2
+        regions = [Elastic(part.poisson, part.modulus * unit / (1 - part.poisson**2)) for part in parts]
+        shear = [modulus * (1 - poisson) for poisson, modulus in regions]
+        whole = sum(G * stratum.thickness for G, stratum in zip(shear, strata, strict=False))
+        sheet = Elastic(regions[0].poisson, whole / shear[0] / layered.thickness)
+        keep(self, layered=layered, strata=strata, base=base, held=held, regions=tuple(regions))
+        keep(self, beyond=regions[-1] if below else sheet)
+        keep(self, interfaces=tuple(accumulate(stratum.thickness for stratum in strata)))
 
     def extent(self, scales: Scales) -> float:
         """Radius up to which its surface attracts."""
@@ -101,7 +83,7 @@ class Stratified(Body):
 
         R = min(R, float(lines[-1]))  # without what is rigid
         size, interfaces = self._size(R, how), self.interfaces
-        depths = [0.0, *interfaces, size] if self.held == "substrate" else [0.0, *interfaces]
+        depths = [0.0, *interfaces, *([size] if self.held == "substrate" else [])]
         # Neither the depths nor what is beyond depends on the contact radius, by which operators are interpolated.
         r = np.append(lines, R + grid.geometric(size - R, BESIDE * R, how.growth)[1:])
         finest = min(length, BESIDE * R)
@@ -153,16 +135,8 @@ class Layer(Stratified):
         super().__post_init__(poisson)
         keep(self, thickness=require_thickness(self.thickness))
         layers.require_foundation(self.foundation)
-
-    @property
-    def layered(self) -> layers.Layers:
-        """What the integral equation knows it as."""
-        return layers.Layer(self.thickness, self.material.poisson, self.foundation)
-
-    @property
-    def words(self) -> list[str]:
-        """Its thickness and foundation."""
-        return [*super().words, f"thickness {self.thickness:g} beta", self.foundation]
+        self.made_of(layers.Layer(self.thickness, self.material.poisson, self.foundation))
+        keep(self, words=[*self.words, f"thickness {self.thickness:g} beta", self.foundation])
 
 
 @dataclass(frozen=True)
@@ -189,17 +163,10 @@ class Coated(Stratified):
         super().__post_init__(poisson)
         sizes = {"thickness": require_thickness(self.thickness), "modulus_ratio": require_film(self.modulus_ratio)}
         keep(self, **sizes, substrate_poisson=require_poisson(self.substrate_poisson))
-
-    @property
-    def layered(self) -> layers.Layers:
-        """What the integral equation knows it as."""
-        return layers.Coated(self.thickness, self.modulus_ratio, self.material.poisson, self.substrate_poisson)
-
-    @property
-    def words(self) -> list[str]:
-        """Its coating and what is below."""
+        self.made_of(layers.Coated(self.thickness, self.modulus_ratio, self.material.poisson, self.substrate_poisson))
         below = f"on a half-space of poisson {self.substrate_poisson:g}"
-        return [*super().words, f"thickness {self.thickness:g} beta", f"{self.modulus_ratio:g} times as stiff", below]
+        thickness, stiffness = f"thickness {self.thickness:g} beta", f"{self.modulus_ratio:g} times as stiff"
+        keep(self, words=[*self.words, thickness, stiffness, below])
 
 
 @dataclass(frozen=True)
@@ -214,36 +181,27 @@ class Layers(Stratified):
         A rigid one to which the last stratum is bonded, or on which it slides, or an elastic half-space.
     """
 
-    strata: tuple[layers.Stratum, ...] = field()  # not the property that it stands for
+    strata: tuple[layers.Stratum, ...]
     base: layers.Foundation | layers.Substrate = "bonded"
 
     looks: ClassVar[str] = "layered body"
 
     def __post_init__(self, poisson: float | None) -> None:
-        made = self.layered
-        keep(self, strata=made.strata, base=made.base)
-        first, own = self.strata[0].poisson, self.material.poisson if self.material is not USUAL else None
+        layered = layers.Layers(self.strata, self.base)
+        strata, base = layered.strata, layered.base
+        first, own = strata[0].poisson, self.material.poisson if self.material is not USUAL else None
         given = [value for value in (poisson, own) if value not in (None, first)]
         if given:
             remedy = f"leave it out, or replace material too, by LinearElastic({first:g})"
             raise InputError(f"poisson = {given[0]:g} with strata, limit: that of the first, {first:g}; {remedy}")
         super().__post_init__(first)
-
-    @property
-    def layered(self) -> layers.Layers:
-        """What the integral equation knows it as."""
-        return layers.Layers(self.strata, self.base)
-
-    @property
-    def words(self) -> list[str]:
-        """Its strata and base."""
-        parts = [
-            f"{part.thickness:g} beta of modulus {part.modulus:g}, poisson {part.poisson:g}" for part in self.strata
-        ]
-        base = self.base
+        self.made_of(layered)
+        words = [f"{part.thickness:g} beta of modulus {part.modulus:g}, poisson {part.poisson:g}" for part in strata]
         if isinstance(base, layers.Substrate):
-            return [*super().words, *parts, f"half-space of modulus {base.modulus:g}, poisson {base.poisson:g}"]
-        return [*super().words, *parts, base]
+            words.append(f"half-space of modulus {base.modulus:g}, poisson {base.poisson:g}")
+        else:
+            words.append(base)
+        keep(self, words=[*self.words, *words])
 
 
 def as_body(part: object) -> object:

@@ -20,7 +20,6 @@ from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.elastic.operators import (
     ROOM,
     Interpolated,
-    Kernels,
     MovingGrid,
     Part,
     Piecewise,
@@ -217,7 +216,7 @@ def require_stored(count: int, nodes: int) -> None:
         )
 
 
-def _kernels(body: SizedBody, moving: MovingGrid, edges: Array) -> Kernels:
+def _kernels(body: SizedBody, moving: MovingGrid, edges: Array) -> Array:
     """Kernels on a grid at the places (n,) of a contact edge, in the surface's coordinate."""
     return kernels_of([operator for operator, _ in body.made(moving.lines_at(edges))])
 

@@ -8,7 +8,7 @@ is discretised as any body with a length.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -30,25 +30,22 @@ from halfspace.values import Array
 # Of what n nodes a panel leave, 10^-n, what polynomials in the contact radius may leave of a layer's images. On a stiff
 # coating pull-off's approach errs by 40 times that; estimates do not know it where finer grids have the same radii.
 BETWEEN = 1e-4
-# How many times as large as the change from twin to twin an error may be: the images of both err alike. Under a sharp
+# How many times as large as the change from twin to twin an error may be: both have the same images. Under a sharp
 # tip on strata 0.01 beta thin it was 2.8 times at every tolerance, on thicker ones at tight tolerances alone.
 DOUBT = 4
-IMAGES = (1.14, 1.17)  # ratios of the depths of a layered body's images, and of its twin's
 WIDER = 2  # times the half-space's extent, to where all images are integrated
 
 
-def discretise(
-    images: Sequence[Images], scales: Scales, to_load: float, resolution: Resolution, which: int
-) -> Discretised:
-    """Layered body at a resolution, under any surface, by its images or by those of its twin."""
+def discretise(images: Images, scales: Scales, to_load: float, resolution: Resolution, _which: int) -> Discretised:
+    """Layered body at a resolution, under any surface; its twin has the same images."""
     if math.isfinite(scales.profile.end):
-        return sized(layered_body(scales, images[which], resolution, to_load), resolution.nodes)
-    return charted(layered_charts(scales, images[which], resolution, to_load))
+        return sized(layered_body(scales, images, resolution, to_load), resolution.nodes)
+    return charted(layered_charts(scales, images, resolution, to_load))
 
 
 def layered(body: LayeredBody) -> Callable[[Scales, float, Resolution, int], Discretised]:
     """Discretises a layered body."""
-    return partial(discretise, [images_of(body, spacing) for spacing in IMAGES])
+    return partial(discretise, images_of(body))
 
 
 def layered_charts(

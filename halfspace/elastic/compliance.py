@@ -222,16 +222,6 @@ class ElasticOperator(Valued, Operator):
         return row
 
     @cached_property
-    def centre_row(self) -> Array:
-        """Row (q,) of `continuous` on the axis, where the polynomial in the radius begins."""
-        return self.interpolation(0.0)[0]
-
-    @cached_property
-    def unit_row(self) -> Array:
-        """Row (q,) that interpolates nodal values at radius 1, the edge on a grid that follows the contact."""
-        return self.interpolation(1.0)[0]
-
-    @cached_property
     def _places(self) -> Array:
         """Nodes (q,) in the surface's coordinate."""
         return self.coordinate.along(self.radii)

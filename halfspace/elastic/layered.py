@@ -30,7 +30,7 @@ from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
 from halfspace.elastic.grid import gauss_legendre, polynomial
 from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
-from halfspace.elastic.operators import Kernels, NearlyHomogeneous, Part, chebyshev_lengths, nodes_beside
+from halfspace.elastic.operators import NearlyHomogeneous, Part, chebyshev_lengths, nodes_beside
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
@@ -214,12 +214,11 @@ def layered(images: Images, half_space: ElasticOperator, until: float, known: in
 
 def image_compliance(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> Array:
     """What the images of a layered body deflect the nodes of a half-space's panels by pressures there, (..., q, q)."""
-    kernels = image_kernels(images, body, until, known)
-    return np.asarray(kernels.values[..., kernels.places] * body.weights)
+    return image_kernels(images, body, until, known) * body.weights
 
 
-def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> Kernels:
-    """The same but for the weights, as values (..., n) and their places (q, q) among these: the kernel is symmetric.
+def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> Array:
+    """The same but for the weights.
 
     Cells that begin beyond a radius, in beta, and an infinite one are integrated by their nodes even where they are
     longer than the first stratum is thick: too stiffly for what is pressed there, if anything is. Between the first
@@ -229,20 +228,17 @@ def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, 
     i, j = np.triu_indices(radii.size)
     i, j = i[j >= known], j[j >= known]
     rules = _near(radii, left, right, (right - left > images.smooth) & (left < until), known)
-    values = np.zeros((*images.strengths.shape[:-1], i.size + sum(to.size for to, *_ in rules) * k + 1))
-    places = np.full((radii.size, radii.size), values.shape[-1] - 1)
-    places[i, j] = places[j, i] = np.arange(i.size)
+    values = np.zeros((*images.strengths.shape[:-1], radii.size, radii.size))
     for some in _blocks(i.size, images.depths.size):
-        values[..., some] = images.kernel(radii[i[some]], radii[j[some]]) / (2 * np.pi)
-    at_nodes, end = np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1)), i.size
+        values[..., i[some], j[some]] = images.kernel(radii[i[some]], radii[j[some]]) / (2 * np.pi)
+        values[..., j[some], i[some]] = values[..., i[some], j[some]]
+    at_nodes = np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
     for to, cell, rule in rules:
         for some in _blocks(to.size, images.depths.size * rule[0]):
             nodes = body.cell_nodes[cell[some]]
             moments = near_moments(images.ring, radii[to[some]], left[cell[some]], right[cell[some]], k, rule)
-            here = end + np.arange(nodes.size).reshape(nodes.shape)
-            places[to[some, None], nodes], values[..., here] = here, moments @ at_nodes / body.weights[nodes]
-            end += nodes.size
-    return Kernels(values, places)
+            values[..., to[some, None], nodes] = moments @ at_nodes / body.weights[nodes]
+    return values
 
 
 def nearly_homogeneous(
@@ -274,11 +270,8 @@ def _remainder(
 ) -> Part:
     """Images between two contact radii, integrated up to a radius beyond the wider one, or beyond the widest."""
     radii = chebyshev_lengths(low, high, degree)
-    return Part(radii, partial(_in_units, images, unit, max(high, widest) + beyond, left, radii))
-
-
-def _in_units(images: Images, unit: ElasticOperator, until: float, left: float, radii: Array) -> Kernels:
-    return image_kernels(images.in_units(radii, left), unit, until / float(radii.min()))
+    until = (max(high, widest) + beyond) / float(radii.min())
+    return Part(radii, lambda: image_kernels(images.in_units(radii, left), unit, until))
 
 
 def _blocks(count: int, size: int) -> list[slice]:

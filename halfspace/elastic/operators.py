@@ -27,24 +27,6 @@ With this room the largest scenes stay below 1 GB. Curves and events at usual to
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Kernels(Valued):
-    """Values (m, ...) at m contact radii: matrices (q, q), or n numbers and where a matrix has each, (q, q)."""
-
-    values: Array
-    places: Index | None = None
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes."""
-        return self.values.nbytes + (0 if self.places is None else self.places.nbytes)
-
-    def combined(self, weights: Array) -> Array:
-        """Matrix (q, q) of the values summed with weights (m,)."""
-        summed = np.tensordot(weights, self.values, 1)
-        return np.asarray(summed if self.places is None else summed[self.places])
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class Homogeneous(Valued, Operator):
     """A body without a length of its own, by its operator at the contact radius 1."""
 
@@ -56,10 +38,10 @@ class Homogeneous(Valued, Operator):
         """Row (q,) that interpolates nodal values on the axis."""
         return self.unit.axis_row
 
-    @property
+    @cached_property
     def edge_row(self) -> Array:
-        """Row (q,) that interpolates nodal values at the contact edge."""
-        return self.unit.unit_row
+        """Row (q,) that interpolates nodal values at the contact edge, radius 1 of the unit."""
+        return self.unit.interpolation(1.0)[0]
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
@@ -74,28 +56,24 @@ class Homogeneous(Valued, Operator):
         return np.asarray(np.sqrt(scale) * self.unit.compliance_root)
 
 
-def by_logarithm(lengths: Array, x: float) -> tuple[Array, Array]:
-    """Weights (m,) of values at lengths (m,) in their polynomial of log x, and in its derivative by log x."""
-    nodes = np.log(lengths)
-    values, slopes = lagrange(nodes, barycentric(nodes), float(np.log(x)))
-    return np.array(values), np.array(slopes)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Part(Valued):
-    """Kernels between some lengths (m,): the polynomial in their logarithm through those at these lengths.
+    """Kernels (q, q) between some lengths (m,): the polynomial in their logarithm through those at these lengths.
 
-    `make` gives these. It is asked when they are first needed, and again where they had to make room for others.
+    `make` gives these, (m, q, q). It is asked when they are first needed, and again where they had to make room for
+    others.
     """
 
     lengths: Array
-    make: Callable[[], Kernels]
+    make: Callable[[], Array]
 
     def at(self, length: float, derivative: int) -> Array:
         """Kernel (q, q) at a length, or its derivative by the logarithm of that."""
-        return STORE.get(self, "kernels", self.make).combined(by_logarithm(self.lengths, length)[derivative])
+        nodes = np.log(self.lengths)
+        weights = lagrange(nodes, barycentric(nodes), float(np.log(length)))[derivative]
+        return np.asarray(np.tensordot(weights, STORE.get(self, "kernels", self.make), 1))
 
-    def knowing(self, kernels: Kernels) -> Part:
+    def knowing(self, kernels: Array) -> Part:
         """The same, which need not make its kernels at first: they are there."""
         STORE.get(self, "kernels", lambda: kernels)
         return self
@@ -161,16 +139,6 @@ class NearlyHomogeneous(Homogeneous):
     def _parts(self) -> dict[int, Part]:
         """Remainders made so far, by their number from the least radius on."""
         return {}
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class _Nodes(Valued):
-    """Radii and weights of the nodes, and their derivatives by the contact radius."""
-
-    radii: Array
-    weights: Array
-    d_radii: Array
-    d_weights: Array
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -243,71 +211,41 @@ class Interpolated(Valued, Operator):
 
     def _on_cells(self, scale: float, compliance: Array) -> ElasticOperator:
         """Operator with a compliance on the cells at a scale."""
-        nodes, ends = self._nodes(scale), self.grid.coordinate.radius(self.grid.lines(scale))[0]
-        return ElasticOperator(nodes.radii, nodes.weights, compliance, ends, self.cell_nodes, self.grid.coordinate)
+        (radii, weights), _ = self._nodes(scale)
+        ends = self.grid.coordinate.radius(self.grid.lines(scale))[0]
+        return ElasticOperator(radii, weights, compliance, ends, self.cell_nodes, self.grid.coordinate)
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
-        return self._at(scale).operator
+        return STORE.get(self, "at", partial(self._made, scale), scale)
+
+    def _made(self, scale: float) -> ElasticOperator:
+        (radii, weights), _ = self._nodes(scale)
+        kernel = self.kernel.at(self.grid.edge(scale), 0)
+        return self._on_cells(scale, kernel * (weights / np.maximum.outer(radii, radii)))
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
-        here = self._at(scale)
-        nodes, body = here.nodes, here.operator
-        by_kernel = here.kernel_rate @ (nodes.weights * pressure)
-        farther = np.maximum.outer(np.arange(nodes.radii.size), np.arange(nodes.radii.size))
-        by_radii = (body.compliance * (nodes.d_radii / nodes.radii)[farther]) @ pressure
-        by_weights = body.compliance @ (nodes.d_weights / nodes.weights * pressure)
-        return nodes.d_radii, nodes.d_weights, by_kernel - by_radii + by_weights
+        (radii, weights), (d_radii, d_weights) = self._nodes(scale)
+        edge, compliance = self.grid.edge(scale), self.at(scale).compliance
+        kernel = self.kernel.at(edge, 1) * (self.grid.edge_rate(scale) / edge)
+        by_kernel = (kernel / np.maximum.outer(radii, radii)) @ (weights * pressure)
+        farther = np.maximum.outer(np.arange(radii.size), np.arange(radii.size))
+        by_radii = (compliance * (d_radii / radii)[farther]) @ pressure
+        return d_radii, d_weights, by_kernel - by_radii + compliance @ (d_weights / weights * pressure)
 
-    def _at(self, scale: float) -> _AtScale:
-        return STORE.get(self, "at", partial(_AtScale, self, scale), scale)
-
-    def _nodes(self, scale: float) -> _Nodes:
-        """Gauss's points of the cells at a scale: w = 2 pi r dr/dx dx."""
+    def _nodes(self, scale: float) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Radii and weights 2 pi r dr/dx dx of Gauss's points of the cells at a scale; their derivatives by it."""
         grid = self.grid
         x, lengths = self._gauss_points(grid.lines(scale))
         dx, d_lengths = self._gauss_points(grid.moving * grid.edge_rate(scale))
         (radii, slope), (ring, bend) = grid.coordinate.radius(x), grid.coordinate.ring(x)
-        return _Nodes(radii, ring * lengths, slope * dx, bend * dx * lengths + ring * d_lengths)
+        return (radii, ring * lengths), (slope * dx, bend * dx * lengths + ring * d_lengths)
 
     def _gauss_points(self, lines: Array) -> tuple[Array, Array]:
         """Places of Gauss's points between lines and 2 pi times their weights."""
         places, weights = gauss_points(lines, self.cell_nodes.shape[1])
         return places.ravel(), 2 * np.pi * weights.ravel()
-
-    def _combined(self, scale: float, derivative: int) -> Array:
-        """Kernel (q, q) at a scale, or its derivative by the scale but for that of the radii."""
-        x = self.grid.edge(scale)
-        return self.kernel.at(x, derivative) * (self.grid.edge_rate(scale) / x if derivative else 1.0)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class _AtScale(Valued):
-    """All that an interpolated operator has at one contact radius, each when it is first asked for."""
-
-    body: Interpolated
-    scale: float
-
-    @cached_property
-    def nodes(self) -> _Nodes:
-        return self.body._nodes(self.scale)
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of its two matrices."""
-        return 16 * self.body.cell_nodes.size**2
-
-    @cached_property
-    def operator(self) -> ElasticOperator:
-        body, nodes = self.body, self.nodes
-        compliance = body._combined(self.scale, 0) * (nodes.weights / np.maximum.outer(nodes.radii, nodes.radii))
-        return body._on_cells(self.scale, compliance)
-
-    @cached_property
-    def kernel_rate(self) -> Array:
-        """Derivative of the kernel by the scale, but for that of the radii, (q, q)."""
-        return self.body._combined(self.scale, 1) / np.maximum.outer(self.nodes.radii, self.nodes.radii)
 
 
 def nodes_beside(step: float, left: float) -> int:
@@ -320,9 +258,9 @@ def nodes_beside(step: float, left: float) -> int:
     return 1 + int(np.count_nonzero(np.cumprod(x2 / (x2 + np.pi**2 / 4))[:-1] > left))
 
 
-def kernels_of(operators: Sequence[ElasticOperator]) -> Kernels:
+def kernels_of(operators: Sequence[ElasticOperator]) -> Array:
     """Kernels max(r_i, r_j) C_ij/w_j of operators."""
-    return Kernels(np.array([np.maximum.outer(o.radii, o.radii) * o.compliance / o.weights for o in operators]))
+    return np.array([np.maximum.outer(o.radii, o.radii) * o.compliance / o.weights for o in operators])
 
 
 def chebyshev_lengths(least: float, most: float, count: int) -> Array:

@@ -135,7 +135,7 @@ class Acting(Valued):
 def _edge(body: ElasticOperator, H: Array, edge: float) -> float:
     """Largest radius at which the gaps H are those of the edge, on a grid that stands still."""
     inside = np.flatnonzero(edge > H)
-    if inside.size == 0 and not body.centre_row @ H <= edge:
+    if inside.size == 0 and not body.interpolation(0.0)[0] @ H <= edge:
         return float("nan")
     if inside.size and inside[-1] == H.size - 1 and body.continuous_value(body.extent, H)[0] <= edge:
         return body.extent
