@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -91,42 +91,35 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
 # A half-space without a length, as a block
 
 
-@dataclass(frozen=True)
-class BlockResolution:
-    """How finely a half-space is discretised, and how far: the size of the block in beta."""
-
-    how: Discretisation
-    radius: float
-
-
 def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: first the degree of the rung below on a larger block, then one degree more."""
-    above, below = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
-    stages = (replace(below, radius=above.radius), above) if level else ()
-    charted = tuple(Charted(block_charts(scene, stage, to_load)) for stage in stages)
-    curve = partial(block_charts, scene, above, to_load)
+    (above, size), (below, _) = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
+    stages = tuple(Charted(block_charts(scene, how, size, to_load)) for how in ((below, above) if level else ()))
+    curve = partial(block_charts, scene, above, size, to_load)
     # A block of given size is compared with one other size only, and if both are small most of the error is left.
     rule = ErrorRule(1.0 if scene.body.cut_off is None else 2.0)
-    settings = {name: getattr(above.how, name) for name in ("degree", "finest", "growth")}
-    return Rung(curve, charted, settings | {"radius": above.radius}, rule=rule)
+    settings = {name: getattr(above, name) for name in ("degree", "finest", "growth")}
+    return Rung(curve, stages, settings | {"radius": size}, rule=rule)
 
 
-def resolution_for(scene: Scene, rtol: float, level: int) -> BlockResolution:
-    """Resolution of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
+def resolution_for(scene: Scene, rtol: float, level: int) -> tuple[Discretisation, float]:
+    """Discretisation of a level, and the size of the block in beta.
+
+    Events are right to about `rtol` at level 0 and a decade better at each above it.
+    """
     degree = int(np.clip(np.ceil(-np.log10(rtol)), 3, 9)) + level
     larger, size = LARGER_ENDLESS if scene.body.endless else LARGER_HELD, scene.body.cut_off
     if size is None:
-        return BlockResolution(Discretisation(degree), size_for(scene.scales, rtol) * larger**level)
-    return BlockResolution(Discretisation(degree), size if level else size / larger)
+        return Discretisation(degree), size_for(scene.scales, rtol) * larger**level
+    return Discretisation(degree), size if level else size / larger
 
 
-def block_charts(scene: Scene, resolution: BlockResolution, to_load: float = COMPRESSION) -> Charts:
-    """Charts of the scene's block.
+def block_charts(scene: Scene, how: Discretisation, radius: float, to_load: float = COMPRESSION) -> Charts:
+    """Charts of the scene's block of a size in beta.
 
     A block continued by a half-space has no length of its own, so its mesh may follow the contact edge; one that is
     clamped or free has, and needs a mesh that is fine wherever the edge passes.
     """
-    how, radius = resolution.how, resolution.radius
     if not scene.body.endless:
         widest = min(scene.scales.widest_radius(to_load), radius / 2)
         made = discretise(scene, grid.graded(0.0, finest_length(scene, how), radius, until=widest), how)
@@ -154,19 +147,19 @@ def _to_infinity(scene: Scene, lines: Array, how: Discretisation) -> Discretised
 def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level.
 
-    What a degree more does not tell other cells do, a twin; see `fem_adhesion.bodies.body.Doubt`. A tension that ends
+    What a degree more does not tell other cells do, a twin; see `fem_adhesion.bodies.body.Known`. A tension that ends
     by a step does so at one place of a cell, for both degrees: numbers erred by up to fifty times their estimate.
     """
     degree = degree_for(rtol) + level
     how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     twin = replace(below, finest=GRIDS.twin[0] * below.finest, growth=GRIDS.twin[1] * below.growth)
-    doubt, step = scene.body.doubt, BY_STEP if scene.scales.step_gap else 1.0
+    body, step = scene.body, BY_STEP if scene.scales.step_gap else 1.0
     return Rung(
         sized_body(scene, curve, to_load).curve,
         (_standing(scene, how, to_load),),
         asdict(how) | {"curve_degree": curve.degree},
-        _standing(scene, twin, to_load) if level and (doubt.other_cells or scene.scales.step_gap) else None,
-        ErrorRule(doubt.times * step * REMAINING, along=True, steps=scene.scales.steps, beyond=scene.tension_beyond),
+        _standing(scene, twin, to_load) if level and (body.other_cells or scene.scales.step_gap) else None,
+        ErrorRule(body.left * step * REMAINING, along=True, steps=scene.scales.steps, beyond=scene.tension_beyond),
     )
 
 

@@ -5,7 +5,7 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import InitVar, dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Literal, NamedTuple, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
@@ -29,17 +29,6 @@ USUAL = LinearElastic()
 
 Layout = tuple[Array, SurfaceCoordinate]
 """Ends of the last cells of a surface, which do not move with the contact, ascending; and the coordinate along it."""
-
-
-class Doubt(NamedTuple):
-    """How far the cells of a body are to be trusted, beyond what a degree more tells.
-
-    `other_cells` says whether what they leave is seen by other cells only, `times` what may be left of a change, in
-    what usually is.
-    """
-
-    other_cells: bool
-    times: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -78,7 +67,8 @@ class Known:
     cut_off: float | None = None  # its size in beta if it is cut off under an endless surface
     file: Path | None = None  # its mesh, if it is given; other bodies are meshed anew for every contact radius
     checked_by: SolverName | None = None  # solver without finite elements, see `fem_adhesion.crosscheck.references`
-    doubt = Doubt(other_cells=False)  # how far its cells are to be trusted
+    other_cells: bool = False  # whether only other cells tell what its cells leave, not a degree more
+    left: float = 1.0  # part of a change of the numbers that may be left, in what usually is
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fem_adhesion.bodies.body import Discretisation, Doubt, Held, Layout
+from fem_adhesion.bodies.body import Discretisation, Held, Layout
 from halfspace.elastic.grid import FLAT
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, keep
@@ -31,7 +31,7 @@ class Hemisphere(Held):
         linear = self.material.area == "projected" and not self.material.finite
         # The whole sphere by harmonics; where a bonded mid-plane meets the free surface the stress is singular.
         checked_by = "harmonics" if self.grip == "sliding" and linear else None
-        keep(self, checked_by=checked_by, doubt=Doubt(other_cells=self.grip == "bonded"))
+        keep(self, checked_by=checked_by, other_cells=self.grip == "bonded")
 
     def rings(self, R: float, how: Discretisation) -> Array:  # noqa: ARG002 (in parts of the cells)
         """Sizes of the rings around the equator, where stress is singular if the mid-plane is bonded.
@@ -65,7 +65,7 @@ class HeldSphere(Held):
     """
 
     cap_angle: float = 30.0
-    doubt = Doubt(other_cells=True)
+    other_cells = True
 
     curved: ClassVar[bool] = True
     has_fields: ClassVar[bool] = False

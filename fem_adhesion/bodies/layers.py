@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fem_adhesion.bodies.body import BESIDE, USUAL, Body, Discretisation, Doubt, Layout
+from fem_adhesion.bodies.body import BESIDE, USUAL, Body, Discretisation, Layout
 from fem_adhesion.materials import Elastic
 from halfspace.elastic import grid, layers
 from halfspace.elastic.grid import FLAT
@@ -44,7 +44,7 @@ class Stratified(Strata, Body):
 
     checked_by = "half-space"
     # Cells that suit the edge of the contact may be long for the rest; twice a usual change may be left.
-    doubt = Doubt(other_cells=True, times=2.0)
+    other_cells, left = True, 2.0
 
     looks: ClassVar[str] = "elastic layer"
 

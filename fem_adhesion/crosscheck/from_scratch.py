@@ -25,7 +25,7 @@ from fem_adhesion.crosscheck.weak_bodies import FineAt, contacts, sharpness
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.newton import Equilibrium, Turn, at_approach, at_load, from_afar, newton, turning_point
+from fem_adhesion.weak_form.newton import Equilibrium, at_approach, at_load, from_afar, newton, turning_point
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -244,7 +244,7 @@ def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
     found = _found(from_afar, state.contact, scene.scales.separated_approach, near)
     if found is None or abs(found.load - state.load) >= USUAL.away * (1 + abs(state.load)):
         return None
-    return _found(newton, state.contact, found.y, at_load(state.contact, state.load), found.nearby)
+    return _found(newton, state.contact, found.y, at_load(state.contact, state.load))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -317,12 +317,11 @@ def _gaps(event: Located, contact: Contact) -> Array:
     return np.where((radii < extent) | (not contact.endless), inside, beyond)
 
 
-def _turn(name: str, state: Equilibrium | None) -> Turn | None:
+def _turn(name: str, state: Equilibrium | None) -> Equilibrium | None:
     """Load and approach of the event in the weak form, or None where there is none nearby."""
     if state is None:
         return None
-    finer = 1.0 if state.contact.endless else USUAL.finer
-    return _found(turning_point, state, under_load=name == "pull_off", finer=finer)
+    return _found(turning_point, state, under_load=name == "pull_off")
 
 
 def _beside(name: str, state: StateInWeakForm) -> Equilibrium | None:

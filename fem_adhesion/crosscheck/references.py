@@ -77,7 +77,7 @@ def _of_blocks(scene: Scene) -> tuple[Array, Array]:
 
 
 def _half_spaces(scene: Scene, rtol: float) -> Operators:
-    degree = convergence.resolution_for(scene, rtol, 0).how.degree
+    degree = convergence.resolution_for(scene, rtol, 0)[0].degree
     if scene.sized:
         last = at_equator(scene.tabor, scene.surface, 8)
         lines = _about(radius_of(scene), np.array([scene.surface.end]), last)
@@ -103,7 +103,7 @@ def elements_of(scene: Scene, rtol: float) -> list[ContactProblem]:
     if scene.body.file:
         return [on_given_mesh(scene, level).problem for level in (0, 1)]
     if not scene.sized:
-        degree, (lines, wider) = convergence.resolution_for(scene, rtol, 0).how.degree, _of_blocks(scene)
+        degree, (lines, wider) = convergence.resolution_for(scene, rtol, 0)[0].degree, _of_blocks(scene)
         cases = ((lines, degree), (wider, degree), (wider, degree + 1))
         return [discretise.discretise(scene, ends, Discretisation(d, growth=2.0)).problem for ends, d in cases]
     degree = convergence.degree_for(rtol) + (scene.body.layered is not None)  # thin films bend within their thickness

@@ -47,7 +47,6 @@ class Settings:
     tiny: float = 0.1  # radius of a contact about whose edge cells are finest, in the radius of the attraction
     opening: float = 0.49  # part of a gap that opens in the radius of the attraction by the 3-9 law
     closest: float = 0.1  # least gap that counts there, in eps
-    finer: float = 3.0  # how much shorter steps past a turning point are where a body has a length
 
     # Bodies of the weak form
     fineness: tuple[tuple[int, float], ...] = ((3, 10.0), (4, 30.0), (5, 90.0))  # half-spaces: degree, box in radii

@@ -104,6 +104,17 @@ class Cells(Valued):
         found = np.einsum("iacq,anq->cinq", self.by_functions(stress), self.functions)
         return np.asarray(found.reshape(len(self.radii), -1, found.shape[-1]))
 
+    @cached_property
+    def pressures(self) -> Array:
+        """The pressures of `pressure_modes` made orthonormal in each cell, times the measure, (c, q, modes)."""
+        root = np.sqrt(self.measure)[:, :, None]
+        return np.asarray(root * np.linalg.qr(root * pressure_modes(self.space))[0])
+
+    def projection(self, field: Array) -> Array:
+        """The sum of these pressures in each cell that is nearest to a field at the points, (c, q)."""
+        amounts = field[:, None] @ self.pressures
+        return np.asarray((amounts @ self.pressures.transpose(0, 2, 1))[:, 0] / self.measure)
+
     def dilatations(self) -> Array:
         """Relative change of volume at each point by each unit displacement of its cell, (c, 2 n, q)."""
         return self.densities(np.broadcast_to(DILATATION[:, None, None], (5, *self.radii.shape)))
@@ -207,13 +218,11 @@ def projected_stiffness(space: Space, poisson: float) -> Array:
 
     Parameters and result as of `cell_stiffness`.
     """
-    cells, modes = Cells.of(space), pressure_modes(space)
+    cells, lam = Cells.of(space), lame_parameters(poisson)[0]
     K = cells.stiffness(of_gradient(shear_matrix(poisson)))
     for own, part in cells.batches():
-        root = np.sqrt(part.measure)[:, :, None]
-        orthonormal = np.linalg.qr(root * modes)[0]
-        projected = part.dilatations() @ (root * orthonormal)
-        K[own] += lame_parameters(poisson)[0] * projected @ projected.transpose(0, 2, 1)
+        projected = part.dilatations() @ part.pressures
+        K[own] += lam * projected @ projected.transpose(0, 2, 1)
     return K
 
 

@@ -10,19 +10,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import legvander2d
 from scipy.sparse.linalg import splu
-from skfem import CellBasis
 
-from fem_adhesion.elasticity.cells import (
-    DILATATION,
-    Cells,
-    cell_quadrature,
-    elastic_matrix,
-    pressure_modes,
-    projects,
-    shear_matrix,
-)
+from fem_adhesion.elasticity.cells import STRAINS, Cells, elastic_matrix, projects, shear_matrix
 from fem_adhesion.elasticity.reference import reference_functions
 from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.materials import Elastic
@@ -42,37 +32,24 @@ def sampled(space: Space, coefficients: Array, places: Array) -> Array:
 
 def positions(space: Space, places: Array) -> Array:
     """Return r and z, (2, cells, k), of points (2, k) of the reference cell in each cell."""
-    return np.asarray(_basis(space, places).global_coordinates())
+    return np.asarray(space.mesh.mapping().F(places))
 
 
-def strains(space: Space, displacement: Array, places: Array) -> Array:
-    """Return the strains e_rr, e_zz, u_r/r and gamma_rz of a displacement, (4, cells, k), in beta/R.
+def strains(cells: Cells, displacement: Array) -> Array:
+    """Return the strains e_rr, e_zz, u_r/r and gamma_rz of a displacement (N,) at the points, (4, c, q), in beta/R."""
+    return np.tensordot(STRAINS, cells.gradient(displacement), 1)
 
-    The displacement (N,) has all its unknowns, in beta^2/R; places (2, k) are points of the reference cell. On the axis
-    u_r/r is du_r/dr.
+
+def stresses(cells: Cells, poisson: float, displacement: Array, *, projected_dilatation: bool = False) -> Array:
+    """Return the stresses of a displacement at the points of the cells, (4, c, q), in E* beta/R, tension positive.
+
+    The displacement (N,) has all unknowns, in beta^2/R. The stresses are discontinuous from cell to cell. With
+    projected dilatation the displacement is that of `fem_adhesion.elasticity.cells.projected_stiffness`, whose mean
+    stress is lambda times the projection of div u, not div u itself.
     """
-    basis = _basis(space, places)
-    u_r, u_z = (basis.interpolate(displacement[row]) for row in space.components)
-    r = np.asarray(basis.global_coordinates())[0]
-    off_axis = r > 1e-12 * r.max()
-    hoop = np.where(off_axis, np.asarray(u_r) / np.where(off_axis, r, 1.0), u_r.grad[0])
-    return np.array([u_r.grad[0], u_z.grad[1], hoop, u_r.grad[1] + u_z.grad[0]])
-
-
-def stresses(
-    space: Space, poisson: float, displacement: Array, places: Array, *, projected_dilatation: bool = False
-) -> Array:
-    """Return the stresses of a displacement at points of each cell, (4, cells, k), in E* beta/R, tension positive.
-
-    They are discontinuous from cell to cell; the arguments are those of `strains`. With projected dilatation the
-    displacement is that of `fem_adhesion.elasticity.cells.projected_stiffness`, whose mean stress is lambda
-    times the projection of div u, not div u itself.
-    """
-    strain = strains(space, displacement, places)
-    if not projected_dilatation:
-        return np.asarray(np.einsum("ij,jck->ick", elastic_matrix(poisson), strain))
-    stress = np.einsum("ij,jck->ick", shear_matrix(poisson), strain)
-    stress[:3] += lame_parameters(poisson)[0] * _projected_dilatation(space, displacement, places)
+    strain = strains(cells, displacement)
+    stress, dilatation = np.tensordot(shear_matrix(poisson), strain, 1), strain[:3].sum(axis=0)
+    stress[:3] += lame_parameters(poisson)[0] * (cells.projection(dilatation) if projected_dilatation else dilatation)
     return np.asarray(stress)
 
 
@@ -86,12 +63,12 @@ def recovered_stresses(space: Space, materials: Sequence[Elastic], displacement:
     cut = space if len(materials) == 1 else Space(torn(space.mesh, parts), space.element)
     u = np.empty(cut.unknowns)
     u[cut.cell_dofs] = displacement[space.cell_dofs]
-    places = cell_quadrature(cut)[0]
-    stress = np.empty((4, cut.mesh.nelements, places.shape[1]))
-    for cells, (poisson, modulus) in zip(parts, materials, strict=True):
-        found = stresses(cut, poisson, u, places, projected_dilatation=projects(cut, poisson))
-        stress[:, cells] = modulus * found[:, cells]
-    return cut, u, projection(cut, stress)
+    cells = Cells.of(cut)
+    stress = np.empty((4, *cells.radii.shape))
+    for own, (poisson, modulus) in zip(parts, materials, strict=True):
+        found = stresses(cells, poisson, u, projected_dilatation=projects(cut, poisson))
+        stress[:, own] = modulus * found[:, own]
+    return cut, u, projection(cells, stress)
 
 
 def torn(mesh: Any, parts: Sequence[Index]) -> Any:
@@ -109,15 +86,14 @@ def torn(mesh: Any, parts: Sequence[Index]) -> Any:
     return cut.with_boundaries(boundaries).with_subdomains(mesh.subdomains)
 
 
-def projection(space: Space, values: Array) -> Array:
-    """Return the coefficients (m, functions) of the fields nearest to values (m, cells, k) at `cell_quadrature`.
+def projection(cells: Cells, values: Array) -> Array:
+    """Return the coefficients (m, functions) of the fields nearest to values (m, c, q) at the points of the cells.
 
     The least-squares projection on the functions of the displacement itself, each cell weighted by the inverse of its
     area, so that a large cell does not outvote a small, more accurate neighbour. O. C. Zienkiewicz and J. Z. Zhu,
     Int. J. Numer. Methods Eng. 24 (1987) 337-357.
     """
-    points, weights = cell_quadrature(space)
-    N, dA = reference_functions(space.element, points)[0], _basis(space, points, weights).dx
+    space, N, dA = cells.space, cells.functions[0], cells.measure / cells.radii
     dA = dA / dA.sum(axis=1, keepdims=True)
     dofs, size = np.asarray(space.scalar_dofs.element_dofs, dtype=np.intp), int(space.scalar_dofs.N)
     mass = scatter(np.einsum("ik,ck,jk->cij", N, dA, N, optimize=True), dofs, size)
@@ -125,18 +101,6 @@ def projection(space: Space, values: Array) -> Array:
     right = np.array([np.bincount(dofs.ravel(), load.ravel(), size) for load in loads])
     factors = splu(mass, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     return np.asarray(factors.solve(right.T).T)
-
-
-def _projected_dilatation(space: Space, displacement: Array, places: Array) -> Array:
-    """Projection of div u, cell by cell, on `pressure_modes`, at points (2, k): (cells, k)."""
-    cells = Cells.of(space)
-    root, dilatation = np.sqrt(cells.measure), np.tensordot(DILATATION, cells.gradient(displacement), 1)
-    Q, triangle = np.linalg.qr(root[:, :, None] * pressure_modes(space))
-    parts = np.einsum("ckm,ck->cm", Q, root * dilatation)
-    coefficients = np.linalg.solve(triangle, parts[:, :, None])[:, :, 0]
-    x, y = 2.0 * places - 1.0
-    modes = legvander2d(x, y, [space.degree - 1, space.degree - 1])[:, :-1]
-    return np.asarray(coefficients @ modes.T)
 
 
 def hydrostatic(stress: Array) -> Array:
@@ -164,9 +128,3 @@ def energy_density(stress: Array, poisson: float, modulus: float = 1.0) -> Array
     """
     compliance = np.linalg.inv(modulus * elastic_matrix(poisson))
     return np.asarray(np.einsum("i...,ij,j...->...", stress, compliance, stress) / 2)
-
-
-def _basis(space: Space, places: Array, weights: Array | None = None) -> Any:
-    """Basis of scikit-fem's scalar element at points of all cells."""
-    quadrature = places, np.ones(places.shape[1]) if weights is None else weights
-    return CellBasis(space.mesh, space.element, quadrature=quadrature, dofs=space.scalar_dofs, disable_doflocs=True)

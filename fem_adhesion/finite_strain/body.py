@@ -25,7 +25,7 @@ E* beta/R and positive in tension. The same book, section 8.6, with ln J for J -
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -33,8 +33,7 @@ import numpy as np
 from scipy import sparse
 from skfem import Dofs
 
-from fem_adhesion.discretise import quadrilateral
-from fem_adhesion.elasticity.cells import REMEDY_FROM, Cells, cell_quadrature, summed
+from fem_adhesion.elasticity.cells import Cells, cell_quadrature, summed
 from fem_adhesion.elasticity.reference import reference_functions
 from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from halfspace.elastic.grid import gauss_legendre
@@ -207,8 +206,6 @@ class Body(Valued):
         def product(v: Array) -> Array:
             A = self.cells.gradient(v)
             change = np.einsum("abcq,bcq->acq", D, A)
-            if not self._mixed:
-                return self.cells.works(change)
             work = self._of_pressures(np.sum(f * A, axis=0)) - self.products @ v[N:] / lam
             return np.append(self.cells.works(change + f * self._at_points(v[N:])), work)
 
@@ -269,35 +266,22 @@ class Body(Valued):
         )
 
 
-def material_body(space: Space, poisson: float, stretch: float) -> Body:
-    """Body of displacements alone, or with a pressure where these would lock."""
-    if poisson < REMEDY_FROM:
-        return displacement_body(space, poisson, stretch)
-    return mixed_body(space, poisson, stretch, quadrilateral(space.degree - 1))
-
-
-def displacement_body(space: Space, poisson: float, stretch: float) -> Body:
-    """Prepare a body of displacements; raise InputError if poisson is out of range, or the stretch of 0 to 2.
-
-    A larger one is of a sphere smaller than its own contact.
-    """
-    lame_parameters(poisson)
-    require_between(stretch, "stretch", 0.0, 2.0, "give beta/R = sqrt(tabor/radius_ratio)")
-    cells = Cells.of(space)
-    none = np.zeros((0, cells.radii.shape[1])), np.zeros((len(cells.radii), 0), dtype=np.intp), sparse.csc_array((0, 0))
-    return Body(cells, poisson, stretch, *none)
-
-
-def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> Body:
-    """Prepare a body of displacements and pressures, the former as in `displacement_body`, with the same errors.
+def material_body(space: Space, poisson: float, stretch: float, pressure: Any = None) -> Body:
+    """Prepare a body of displacements, or of these and pressures, needed where displacements alone would lock.
 
     The pressure's element is one degree below the displacement's: ElementTriP1 with ElementTriP2, ElementQuadP(p - 1)
-    with ElementQuadP(p). InputError, too, if poisson is zero, at which the pressure is undetermined.
+    with ElementQuadP(p). InputError if poisson is out of range, or zero with a pressure, which it leaves undetermined,
+    or the stretch of 0 to 2: a larger one is of a sphere smaller than its own contact.
     """
-    if lame_parameters(poisson)[0] == 0.0:
-        raise InputError("poisson = 0 leaves the pressure undetermined; use displacement_body, nothing locks there")
-    body, dofs = displacement_body(space, poisson, stretch), Dofs(space.mesh, pressure)
+    if lame_parameters(poisson)[0] == 0.0 and pressure:
+        raise InputError("poisson = 0 leaves the pressure undetermined; leave the pressure out, nothing locks there")
+    require_between(stretch, "stretch", 0.0, 2.0, "give beta/R = sqrt(tabor/radius_ratio)")
+    cells = Cells.of(space)
+    if not pressure:
+        none = np.zeros((0, cells.radii.shape[1])), np.zeros((len(cells.radii), 0), dtype=np.intp)
+        return Body(cells, poisson, stretch, *none, sparse.csc_array((0, 0)))
+    dofs = Dofs(space.mesh, pressure)
     by_cell = np.asarray(dofs.element_dofs, dtype=np.intp)
     values, _ = reference_functions(pressure, cell_quadrature(space)[0])
-    products = scatter((body.cells.measure[:, None] * values) @ values.T, by_cell, dofs.N)
-    return replace(body, pressure_functions=values, pressures=by_cell.T, products=products)
+    products = scatter((cells.measure[:, None] * values) @ values.T, by_cell, dofs.N)
+    return Body(cells, poisson, stretch, values, by_cell.T, products)

@@ -22,7 +22,7 @@ import numpy as np
 
 from fem_adhesion.elasticity.exterior import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space
-from fem_adhesion.finite_strain.body import Body, displacement_body
+from fem_adhesion.finite_strain.body import Body, material_body
 from fem_adhesion.finite_strain.held import HeldBody, Tangent
 from fem_adhesion.finite_strain.settings import USUAL, Settings
 from fem_adhesion.finite_strain.traction import ContactSurface, Convention, Traction, columns, contact_surface
@@ -309,7 +309,7 @@ def finite_strain_problem(
 ) -> FiniteStrainProblem:
     """Put a body under a rigid flat wall that attracts it.
 
-    The body is a `displacement_body` or `mixed_body` of `fem_adhesion.finite_strain.body`, the exterior one of
+    The body is a `fem_adhesion.finite_strain.body.material_body`, the exterior one of
     `fem_adhesion.elasticity.exterior` on its space; tabor and law are as in
     `halfspace.equilibrium.contact.ContactProblem`. The profile is the height of the body's undeformed surface over its
     pole, carried along by its points; that of a block is a perturbation of its flat surface, as in the linear body. The
@@ -340,5 +340,5 @@ def assemble(
     solutions, the rest and the errors as of `finite_strain_problem`; the far field is `point_load` or `clamped`.
     InputError, too, if poisson is out of range.
     """
-    body, exterior = displacement_body(space, poisson, 0.0), far_field(space, poisson)
+    body, exterior = material_body(space, poisson, 0.0), far_field(space, poisson)
     return finite_strain_problem(body, exterior, tabor, convention=Convention(0.0, 0.0), points=points)

@@ -20,6 +20,7 @@ from fem_adhesion.discretise import (
     quadrilateral,
     sized_body,
 )
+from fem_adhesion.elasticity.cells import projects
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.body import material_body
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem, finite_strain_problem
@@ -320,8 +321,9 @@ class ScenesBody(Valued):
         first, last = (coordinate.of(min(radius, self.farthest)) for radius in (inner, outer))
         lines = grid.graded(first, self.length, float(ends[0]), growth=how.growth, until=last)
         space = Space(mesh_of(scene, lines, how), quadrilateral(how.degree))
+        pressure = quadrilateral(how.degree - 1) if projects(space, scene.poisson) else None
         return finite_strain_problem(
-            material_body(space, scene.poisson, 1 / R),
+            material_body(space, scene.poisson, 1 / R, pressure),
             FAR_FIELDS[scene.body.held](space, scene.poisson),
             scene.tabor,
             profile=scene.surface,

@@ -213,19 +213,16 @@ def _one_line(text: str) -> str:
 # The contact as a smooth line, which straight cells are a polygon in
 
 
-class SmoothLine:
-    """Contact line of a mesh: a cubic spline through its vertices by the length of their chords, even at the pole."""
+def on_smooth_line(mesh: Any, r: Array) -> Array:
+    """Points (2, n) of the smooth contact line in the place of those at radii (n,) on its polygon.
 
-    def __init__(self, mesh: Any) -> None:
-        vertices = mesh.p[:, np.unique(mesh.facets[:, mesh.boundaries["contact"]])]
-        self.r, z = vertices[:, np.argsort(vertices[0])]
-        self.s = np.append(0.0, np.cumsum(np.hypot(np.diff(self.r), np.diff(z))))
-        mirrored = [np.concatenate([sign * x[:0:-1], x]) for sign, x in ((-1, self.s), (-1, self.r), (1, z))]
-        self.at = CubicSpline(mirrored[0], np.stack(mirrored[1:]), axis=1)
-
-    def above(self, r: Array) -> Array:
-        """Points (2, n) of the line in the place of those on the polygon at radii (n,)."""
-        return np.asarray(self.at(np.interp(r, self.r, self.s)))
+    It is a cubic spline through the vertices by the length of their chords, even at the pole.
+    """
+    vertices = mesh.p[:, np.unique(mesh.facets[:, mesh.boundaries["contact"]])]
+    x, z = vertices[:, np.argsort(vertices[0])]
+    s = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(z))))
+    mirrored = [np.concatenate([sign * line[:0:-1], line]) for sign, line in ((-1, s), (-1, x), (1, z))]
+    return np.asarray(CubicSpline(mirrored[0], np.stack(mirrored[1:]), axis=1)(np.interp(r, x, s)))
 
 
 def is_straight(mesh: Any) -> bool:
@@ -241,7 +238,7 @@ def chords(mesh: Any) -> tuple[Array, Array]:
     if not is_straight(mesh):
         return np.empty((2, 0)), np.empty(0)
     middles = mesh.p[:, mesh.facets[:, mesh.boundaries["contact"]]].mean(axis=1)
-    return middles, np.hypot(*(SmoothLine(mesh).above(middles[0]) - middles))
+    return middles, np.hypot(*(on_smooth_line(mesh, middles[0]) - middles))
 
 
 # Finer: new nodes are placed by the shape of the cells, which scikit-fem's are not, and of a polygon on a smooth line
@@ -268,5 +265,5 @@ def refined(mesh: Any) -> Any:
     points[:, cells.T] = mesh.mapping().F(X, tind=parents)
     if is_straight(mesh) and "contact" in (finer.boundaries or {}):
         line = np.unique(facet_nodes(fine, finer.boundaries["contact"]))
-        points[:, line] = SmoothLine(mesh).above(points[0, line])
+        points[:, line] = on_smooth_line(mesh, points[0, line])
     return CURVED[kind](points, fine.t, finer.boundaries)

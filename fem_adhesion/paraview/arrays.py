@@ -11,6 +11,7 @@ import numpy as np
 from fem_adhesion.common.facts import plain
 from fem_adhesion.common.page import data_rows, said
 from fem_adhesion.elasticity import stress as stresses
+from fem_adhesion.elasticity.cells import Cells
 from fem_adhesion.fields import Beside, State
 from fem_adhesion.paraview.cells import Cut, Solid
 from fem_adhesion.scene import Scene
@@ -108,8 +109,7 @@ def magnification_for(states: Sequence[State]) -> float:
     The largest at which no strain is drawn as more than `LARGEST_STRAIN`; or to scale, 1/R, if that is little less, so
     that a sphere is drawn as flat as it is where it touches the wall.
     """
-    places = np.stack(np.meshgrid(np.linspace(0, 0.5, 3), np.linspace(0, 0.5, 3))).reshape(2, -1)
-    strains = (stresses.strains(state.space, state.displacement, places) for state in states)
+    strains = (stresses.strains(Cells.of(state.space), state.displacement) for state in states)
     largest = max(float(np.abs(strain).max()) for strain in strains)
     allowed = LARGEST_STRAIN / largest
     power = 10.0 ** np.floor(np.log10(allowed))

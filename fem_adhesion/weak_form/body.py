@@ -23,6 +23,7 @@ from skfem import (
     MeshTri,
 )
 
+from fem_adhesion.weak_form.settings import USUAL, Settings
 from halfspace.values import Valued
 
 Array = NDArray[np.float64]
@@ -234,31 +235,6 @@ def last(size: int) -> Array:
 # The mesh of a half-space
 
 
-@dataclass(frozen=True)
-class Cells:
-    """Cells of the box of a half-space about a contact edge at radius 1.
-
-    Attributes
-    ----------
-    even : int
-        Equal cells next to the edge.
-    growth : float
-        Ratio of one of the others to that before.
-    inner : float
-        How far they go inwards.
-    within : float
-        Longest cell inside the reach of the attraction, as a part of that.
-    """
-
-    even: int = 3
-    growth: float = 3.0
-    inner: float = 0.7
-    within: float = 0.3
-
-
-CELLS = Cells()
-
-
 def half_space(
     finest: float, size: float, degree: int, poisson: float, tip: float = np.inf, reach: float = 1.0
 ) -> Body:
@@ -273,7 +249,7 @@ def half_space(
     return on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
 
 
-def half_space_mesh(finest: float, size: float, tip: float = np.inf, reach: float = 1.0, how: Cells = CELLS) -> Any:
+def half_space_mesh(finest: float, size: float, tip: float = np.inf, reach: float = 1.0, how: Settings = USUAL) -> Any:
     """Mesh of that box."""
     steps = growing(finest, size, how.growth, how.even)
     inner = 1 - steps[steps < how.inner][::-1]
@@ -295,7 +271,7 @@ def growing(finest: float, size: float, growth: float, even: int = 1) -> Array:
     return np.asarray(np.cumsum(finest * growth ** np.maximum(np.arange(count) - even + 1, 0)))
 
 
-def fine_within(reach: float, lines: Array, part: float = CELLS.within) -> Array:
+def fine_within(reach: float, lines: Array, part: float = USUAL.within) -> Array:
     """Ends of cells, cut into equal parts where they are longer than a part of a distance within it."""
     counts = np.where(lines[:-1] < reach, np.ceil(np.diff(lines) / (part * reach)), 1).astype(int)
     cells = zip(lines[:-1], lines[1:], counts, strict=True)

@@ -15,6 +15,7 @@ from fem_adhesion.scene import Scene, require_scene
 from fem_adhesion.weak_form.body import Array, box, discretise, growing
 from fem_adhesion.weak_form.contact import Contact
 from fem_adhesion.weak_form.path import Path, Point, arclength, condition_of
+from fem_adhesion.weak_form.settings import USUAL, Settings
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
@@ -24,37 +25,6 @@ from halfspace.values import Valued
 
 OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
 LIMITS = {"tabor": (0.02, 5.0), "poisson": (0.0, 0.49), "rtol": (1e-4, 0.1), "to_load": (0.0, 20.0)}
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How a curve is discretised.
-
-    Attributes
-    ----------
-    degrees : tuple of int
-        Of the elements, until two in a row agree to rtol.
-    separated : float
-        Approach in eps at which the curve begins; the attraction is a hundredth of its maximum there.
-    left_out : float
-        Part of rtol eps that the far clamp may take from the approach.
-    found : float
-        To which a number is solved for, in its unit.
-    growth : float
-        Ratio of the lengths of neighbouring cells beyond the fine ones.
-    cells : float
-        Length of the fine cells in the width of the spike of tension, or of the attraction.
-    """
-
-    degrees: tuple[int, ...] = (2, 3, 4, 5)
-    separated: float = -9.0
-    left_out: float = 0.01
-    found: float = 1e-8
-    growth: float = 3.0
-    cells: float = 0.3
-
-
-SETTINGS = Settings()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -134,7 +104,7 @@ class Curve(Valued):
         return not self.missed
 
 
-def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settings = SETTINGS) -> Curve:
+def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settings = USUAL) -> Curve:
     """Trace the load-approach curve by Newton's method for all displacements at once.
 
     The body is meshed by quadrilaterals and clamped far away; scikit-fem assembles the weak form of

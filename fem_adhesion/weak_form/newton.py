@@ -12,55 +12,16 @@ from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.optimize import newton as secant
 
 from fem_adhesion.weak_form.body import Array, last
-from fem_adhesion.weak_form.contact import LENNARD_JONES, Contact
+from fem_adhesion.weak_form.contact import Contact
+from fem_adhesion.weak_form.settings import USUAL, Settings
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
 
 Condition = Callable[[Array], tuple[float, Array]]
 """What a state lacks of the last equation, and the derivative (q + 1,) of that equation by the state."""
-
-
-@dataclass(frozen=True)
-class Steps:
-    """How far steps go, and when they end.
-
-    Attributes
-    ----------
-    most : int
-        Newton steps, after which there is no equilibrium; steps in approach likewise.
-    near : float
-        Relative change of the gaps that a further Newton step would make.
-    kept : float
-        Length of a step relative to that before: a shorter one may be followed by one along the same tangent.
-    closing : float
-        Largest part of a gap that one Newton step may close.
-    opening : float
-        Largest part of a gap by which it may change in a step of approach.
-    flat, nearby : float
-        First steps past an extremum of the load in approach (1 + its size), past a fold in load.
-    followed : float
-        Largest change of a gap in such a step, in grains of the law.
-    farthest : float
-        Farthest place to look for a turning point, in such steps.
-    tries : int
-        Steps towards a turning point.
-    """
-
-    most: int = 20
-    near: float = 1e-9
-    kept: float = 0.2
-    closing: float = 0.75
-    opening: float = 0.3
-    flat: float = 1e-2
-    nearby: float = 2e-3
-    followed: float = 0.25
-    farthest: float = 50.0
-    tries: int = 6
-
-
-STEPS = Steps()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -162,7 +123,7 @@ class Equilibrium(Valued):
         near = self.nearby
         start = self.y + (step if under_load else step / near.stiffness) * near.rate
         reached = at_approach(start) if under_load else at_load(self.contact, self.load + step)
-        return newton(self.contact, start, reached, near)
+        return newton(self.contact, start, reached)
 
 
 INNERMOST = 20  # points, those of about two cells
@@ -196,20 +157,15 @@ def at_load(contact: Contact, load: float) -> Condition:
 
 
 def newton(
-    contact: Contact, y: Array, condition: Condition, tangent: Tangent | None = None, how: Steps = STEPS
+    contact: Contact, y: Array, condition: Condition, most: int = USUAL.most, how: Settings = USUAL
 ) -> Equilibrium:
-    """Solve for the equilibrium that meets a condition, from gaps nearby.
+    """Equilibrium with one more condition, from a state nearby; NotConverged if there is none.
 
-    Each step solves for all displacements, with the law's straight line sigma(h) + sigma' (h_new - h) in the place of
-    the law, and for the approach. While each is much shorter than the one before, they keep its slope and with it the
-    factors of the tangent, from that given on; none is kept any more as soon as a step is longer, as where the law ends
-    by a step. NotConverged if the steps run out.
+    The last step's tangent is the equilibrium's `nearby`.
     """
-    body, mu, before, kept = contact.body, contact.tabor, None, how.kept
-    for _ in range(how.most):
-        if tangent is None:
-            tangent, before = Tangent.at(contact, y), 1.0  # its error falls as the square
-        h, flat = y[:-1], contact.undeformed(y[-1])[:-1]
+    body, mu = contact.body, contact.tabor
+    for _ in range(most):
+        tangent, h, flat = Tangent.at(contact, y), y[:-1], contact.undeformed(y[-1])[:-1]
         u = tangent.factors.solve(mu * body.forces(contact.law.tension(h) + tangent.slope * (flat - h)))
         change = np.append(flat - mu * body.rise(u) - h, 0.0)
         missing, row = condition(y)
@@ -219,17 +175,14 @@ def newton(
         # Lest the surfaces pass through each other.
         y = y + min(1.0, how.closing / max(float((-change[:-1] / size).max()), how.closing)) * change
         moved = float(np.abs(change[:-1] / size).max())
-        contraction = how.kept if before is None else moved / before  # along the tangent given, a guess
-        if moved * contraction < how.near:
+        if moved**2 < how.near:
             return Equilibrium(contact, y, u, tangent)
-        kept = 0.0 if contraction > 1 else kept
-        tangent, before = (tangent if contraction <= kept else None), moved
         if not np.isfinite(moved):
             break
-    raise NotConverged(f"no equilibrium in {how.most} Newton steps of the weak form; try a nearer start")
+    raise NotConverged(f"no equilibrium in {most} Newton steps of the weak form; try a nearer start")
 
 
-def from_afar(contact: Contact, far: float, approach: float, how: Steps = STEPS) -> Equilibrium:
+def from_afar(contact: Contact, far: float, approach: float, how: Settings = USUAL) -> Equilibrium:
     """Equilibrium at an approach that is reached from undeformed surfaces at one far apart, by steps in approach.
 
     In each the gaps change by less than a part of them; NotConverged if that leads nowhere, as past a fold.
@@ -243,59 +196,27 @@ def from_afar(contact: Contact, far: float, approach: float, how: Steps = STEPS)
         fastest = float(np.max(np.abs(left * rate[:-1]) / contact.law.size(state.y[:-1])))
         start = state.y + how.opening / max(how.opening, fastest) * left * rate
         start[-1] = approach if fastest <= how.opening else start[-1]
-        state = newton(contact, start, at_approach(start), state.nearby)
+        state = newton(contact, start, at_approach(start))
     raise NotConverged(f"no way from afar to alpha = {approach:.4g} eps in {how.most} steps of the weak form")
 
 
 # Turning points
 
 
-@dataclass(frozen=True)
-class Turn:
-    """Where the equilibria turn: load in R dgamma, approach in eps."""
-
-    load: float
-    approach: float
-
-
-def turning_point(middle: Equilibrium, *, under_load: bool, finer: float = 1.0, how: Steps = STEPS) -> Turn | None:
+def turning_point(middle: Equilibrium, *, under_load: bool, how: Settings = USUAL) -> Equilibrium | None:
     """Where the equilibria near one turn, or None where they do not.
 
-    At the fold of a jump the approach has an extremum along the load, and d(alpha)/dW changes its sign with the
-    determinant of A; at the load's own extremum dW/d(alpha) does. Where they turn, the cubic through the states on
-    either side does; it errs by a power of the steps, which may be that much finer.
+    At the fold of a jump d(alpha)/dW vanishes along the load; at the load's own extremum dW/d(alpha) does along the
+    approach. The root is found by the secant.
     """
-    # The extremum of the load is flat; along the load an edge moves by a spike's width soon.
-    contact = middle.contact
-    step = how.flat * min(1.0, contact.law.grain / LENNARD_JONES.grain) if under_load else how.nearby
-    step *= (1 + abs(middle.approach if under_load else middle.load)) * min(1.0, 9 / contact.sharpness**2) / finer
-    if under_load:  # past the edge of a contact that turns early gaps open much faster than the rest
-        fastest = float(np.max(np.abs(middle.nearby.rate[:-1]) / contact.law.size(middle.y[:-1])))
-        step = min(step, how.followed * contact.law.grain / fastest)
-    a, b = (middle.past(d, under_load=under_load) for d in (-step, step))
-    step = 2 * step
-    for _ in range(how.tries):
-        stiffness = [state.tangent.stiffness for state in (a, b)]
-        slopes = stiffness if under_load else [1 / each for each in stiffness]
-        part = slopes[0] / (slopes[0] - slopes[1])
-        if 0 <= part <= 1:
-            values = [state.load if under_load else state.approach for state in (a, b)]
-            part, turned = _extremum(step, *zip(values, slopes, strict=True))
-            place = (a.approach if under_load else a.load) + part * step
-            return Turn(turned, place) if under_load else Turn(place, turned)
-        if not abs(part) < how.farthest:
-            return None
-        step *= 1.3 * part  # past the root
-        b = a.past(step, under_load=under_load)
-    return None
+    first = how.aside * (1 + abs(middle.approach if under_load else middle.load))
+    first *= min(1.0, 9 / middle.contact.sharpness**2)
 
+    def slope(step: float) -> float:
+        stiffness = middle.past(step, under_load=under_load).tangent.stiffness
+        return stiffness if under_load else 1 / stiffness
 
-def _extremum(length: float, a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
-    """Part of a length at which the cubic with given values and slopes of opposite signs at its ends turns; its value.
-
-    Of its derivative, A t^2 + 2 B t + C, the root between 0 and 1.
-    """
-    rise, first, second = b[0] - a[0], length * a[1], length * b[1]
-    A, B, C = 3 * (first + second - 2 * rise), 3 * rise - 2 * first - second, first
-    t = -C / (B + np.copysign(np.sqrt(B**2 - A * C), second - first))
-    return float(t), float(a[0] + t * (C + t * (B + t * A / 3)))
+    tol, tries = how.turned_at * first, how.tries
+    root, found = secant(slope, 0.0, x1=first, tol=tol, maxiter=tries, full_output=True, disp=False)
+    near = found.converged and abs(root) < how.farthest * first
+    return middle.past(float(root), under_load=under_load) if near else None

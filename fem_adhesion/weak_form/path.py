@@ -13,48 +13,10 @@ from scipy.optimize import newton as secant
 
 from fem_adhesion.weak_form.body import Array
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.newton import Equilibrium, Steps, along, at_approach, at_load, even, newton, on_axis
+from fem_adhesion.weak_form.newton import Equilibrium, along, at_approach, at_load, even, newton, on_axis
+from fem_adhesion.weak_form.settings import USUAL, Settings
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
-
-FEW = Steps(most=10)
-
-
-@dataclass(frozen=True)
-class March:
-    """How a path is followed.
-
-    Attributes
-    ----------
-    first : float
-        First step, in units of the arclength.
-    shortest : float
-        Step at which the path ends without a curve.
-    most : int
-        Points at which it does likewise.
-    opening : float
-        Largest part by which the gap on the axis changes in a step, lest it pass by two folds.
-    turn : float
-        Least cosine between the tangents at both ends of a step.
-    suits : float
-        Part of these limits that the next step is to use.
-    root : float
-        Part of a step within which an event is found.
-    aside : float
-        Arclength to the second state from which an event is sought by the secant.
-    steps : Steps
-        Of Newton's method; a step along the path that takes more is halved.
-    """
-
-    first: float = 0.5
-    shortest: float = 1e-6
-    most: int = 1000
-    opening: float = 0.3
-    turn: float = 0.5
-    suits: float = 0.4
-    root: float = 1e-7
-    aside: float = 1e-3
-    steps: Steps = FEW
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,7 +77,7 @@ class Path(Valued):
 
     contact: Contact
     disc: float
-    how: March = March()
+    how: Settings = USUAL
 
     @cached_property
     def inner(self) -> Array:
@@ -136,7 +98,7 @@ class Path(Valued):
             return a
         start = a.state.y + s * a.direction if start is None else start
         reached = along(a.row, float(a.row @ a.state.y) + s)
-        return self.point(newton(self.contact, start, reached, how=self.how.steps), a.row)
+        return self.point(newton(self.contact, start, reached, self.how.most_along), a.row)
 
     def between(self, a: Point, b: Point, s: float) -> Point:
         """Point an arclength past one of two neighbours, from the tangents at both."""
@@ -151,7 +113,7 @@ class Path(Valued):
         s, bend = how.first, np.zeros(1)
         while points[-1].state.load < to_load:
             before = points[-1]
-            if s < how.shortest or len(points) > how.most:
+            if s < how.shortest or len(points) > how.most_points:
                 at = f"alpha = {before.state.approach:.4g} eps"
                 raise NotConverged(f"the weak form's path ends at {at}; try another to_load or a smaller tabor")
             try:
@@ -170,7 +132,7 @@ class Path(Valued):
             points.append(point)
             s *= float(np.clip(how.suits / max(opened, turned), 0.5, 2.0))
         last, end = points[-1], at_load(self.contact, to_load)
-        return [*points[:-1], self.point(newton(self.contact, last.state.y, end, last.state.nearby), last.row)]
+        return [*points[:-1], self.point(newton(self.contact, last.state.y, end), last.row)]
 
     def located(self, points: Sequence[Point], condition: Condition) -> list[Point]:
         """All points at which a condition changes its sign, in order.
@@ -206,7 +168,7 @@ class Path(Valued):
     def event_near(self, point: Point, condition: Condition) -> Point:
         """Event near a point, by the secant in the arclength."""
         how = self.how
-        s = secant(lambda s: condition(self.onward(point, s)), 0.0, x1=how.aside, tol=how.root * how.first)
+        s = secant(lambda s: condition(self.onward(point, s)), 0.0, x1=how.beside, tol=how.root * how.first)
         return self.onward(point, float(s))
 
 

@@ -35,7 +35,6 @@ class RingRules:
 
     near: tuple[int, int] = (48, 7)  # points and power q of the rule near a target: they leave 5e-13
     far: tuple[tuple[float, int], ...] = ((0.25, 16), (1.0, 8))
-    rounded: float = 1e-10  # lengths of a panel by which a target may be off its node
     batch: int = 2_000_000  # points at which the kernel is evaluated at a time: 16 MB an array
     largest: float = 1.25e8  # bytes of the integrals made at once
 
@@ -153,7 +152,8 @@ def before_equator(targets: Array, lines: Array, nodes: Array, R: float) -> Arra
     last = ring(targets[:, None], y, y - targets[:, None]) @ polynomials * (right - middle)[:, None]
     last[:, 1::2] *= -1  # odd polynomials, seen from the right end
     first = (off_moments(ring, targets, *ends, k, rule) for ends in ((left, targets), (targets, middle)))
-    parts = [np.tile(part, (targets.size // k, 1, 1)) for part in _at_nodes(k, mirrored=True)]
+    cut = np.tile((1 + nodes) / 2, targets.size // k)
+    parts = [_of_a_part(*between, k) for between in pairwise([0 * cut, cut, (1 + cut) / 2, 1 + 0 * cut])]
     return _of_lagrange(_of_parts([*first, last], parts), nodes).reshape(*shape, k)
 
 
@@ -195,30 +195,14 @@ def near_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: 
     moments[..., ~on, :] = off
     r, left, right = r[on], left[on], right[on]
     parts = [off_moments(ring, r, left, r, k, rule), off_moments(ring, r, r, right, k, rule)]
-    moments[..., on, :] = _of_parts(parts, _halves(np.asarray((r - left) / (right - left)), k))
+    cuts = (r - left) / (right - left)
+    moments[..., on, :] = _of_parts(parts, [_of_a_part(0 * cuts, cuts, k), _of_a_part(cuts, 1 + 0 * cuts, k)])
     return moments
 
 
 def _of_parts(moments: Sequence[Array], polynomials: Sequence[Array]) -> Array:
     """Moments of a panel (..., n, k) from those of its parts, by its polynomials in theirs, (n, k, k) each."""
     return np.asarray(sum(np.einsum("...nk,nkl->...nl", *part) for part in zip(moments, polynomials, strict=True)))
-
-
-def _halves(cuts: Array, k: int) -> Sequence[Array]:
-    """Polynomials of the parts before and after cuts (n,); mostly these are a panel's own nodes, but for rounding."""
-    own = (1 + gauss_legendre(k)[0]) / 2
-    nearest = np.abs(cuts[:, None] - own).argmin(axis=1)
-    if np.all(np.abs(cuts - own[nearest]) < RULES.rounded):
-        return [part[nearest] for part in _at_nodes(k, mirrored=False)]
-    return _of_a_part(0 * cuts, cuts, k), _of_a_part(cuts, 1 + 0 * cuts, k)
-
-
-@cache
-def _at_nodes(k: int, *, mirrored: bool) -> list[Array]:
-    """Polynomials of the parts before and after each node of a panel, the latter cut in halves if it is mirrored."""
-    cut = (1 + gauss_legendre(k)[0]) / 2
-    ends = [0 * cut, cut, *([(1 + cut) / 2] if mirrored else []), 1 + 0 * cut]
-    return [_of_a_part(*between, k) for between in pairwise(ends)]
 
 
 def off_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[int, int]) -> Array:

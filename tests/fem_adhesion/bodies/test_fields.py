@@ -11,7 +11,7 @@ from skfem import CellBasis, ElementQuad2, ElementQuadP
 import fem_adhesion
 from fem_adhesion import HeldSphere, Hemisphere, Layer, LinearElastic, NeoHookean, fields
 from fem_adhesion.elasticity import stress
-from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, projected_stiffness
+from fem_adhesion.elasticity.cells import Cells, cell_quadrature, cell_stiffness, projected_stiffness
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress, point_load
 from fem_adhesion.elasticity.space import Space, ring_measure, scatter
@@ -47,9 +47,9 @@ def recovery_error(element, cells, poisson=0.3, projected=False):
     lines = 2 * np.linspace(0, 1, cells + 1)
     space = Space(tensor_grid(lines, lines), element)
     u = buried(space, poisson, projected_stiffness if projected else cell_stiffness)
-    points = cell_quadrature(space)[0]
-    inside = stress.stresses(space, poisson, u, points, projected_dilatation=projected)
-    found = stress.sampled(space, stress.projection(space, inside), PLACES)
+    cells_of = Cells.of(space)
+    inside = stress.stresses(cells_of, poisson, u, projected_dilatation=projected)
+    found = stress.sampled(space, stress.projection(cells_of, inside), PLACES)
     r, z = stress.positions(space, PLACES)
     exact = boussinesq_stress(r, z - 1, poisson)
     return np.sqrt(np.mean((found - exact) ** 2)) / np.abs(exact).max()

@@ -16,7 +16,7 @@ from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped, free, point_load, sliding
 from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.finite_strain import body as material
-from fem_adhesion.finite_strain.body import displacement_body, mixed_body
+from fem_adhesion.finite_strain.body import material_body
 from fem_adhesion.finite_strain.problem import finite_strain_problem
 from fem_adhesion.finite_strain.traction import Convention, convention_of, yielded_adhesion
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
@@ -40,7 +40,7 @@ def block(degree=3, fine=0.4):
 
 
 def problem_of(space, stretch, poisson=0.3, convention=VERTICAL, pressure=None, tabor=1.0, far_field=clamped):
-    body = mixed_body(space, poisson, stretch, pressure) if pressure else displacement_body(space, poisson, stretch)
+    body = material_body(space, poisson, stretch, pressure)
     return finite_strain_problem(body, far_field(space, poisson), tabor, convention=convention)
 
 
@@ -166,7 +166,7 @@ def test_a_stretched_cylinder_has_the_closed_form_stress(mixed, lateral):
     uniaxial = brentq(lambda s: principal(s, s**2 * axial), 0.5, 1.5, xtol=1e-15)
     across = uniaxial if lateral == "free" else axial
     space = Space(tensor_grid(np.array([0, 0.7, 2.0]), np.array([0, 0.4, 1.0])), ElementQuadP(3))
-    body = mixed_body(space, nu, delta, ElementQuad2()) if mixed else displacement_body(space, nu, delta)
+    body = material_body(space, nu, delta, ElementQuad2() if mixed else None)
     u = np.zeros(space.unknowns)
     u[space.components] = interpolated(space, (across - 1) / delta, (axial - 1) / delta)
     pressures = spsolve(body.products, lam * body.log_volumes(u)) if mixed else []
@@ -330,7 +330,7 @@ def sphere():
     space = Space(hemisphere(R), ElementQuadP(3))
     condensed = condense(space, nu, far_field=sliding)
     events = events_of(ContactProblem(condensed.operator, tabor, profile=SphereSurface(R)), condensed.unknowns)
-    body, exterior = displacement_body(space, nu, 1 / R), sliding(space, nu)
+    body, exterior = material_body(space, nu, 1 / R), sliding(space, nu)
     return finite_strain_problem(body, exterior, tabor, profile=SphereSurface(R), convention=BLEND), events
 
 
@@ -476,9 +476,9 @@ def test_mixed_form_does_not_lock():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: displacement_body(block(), 0.3, 3.0), "is outside 0 <= stretch <= 2"),
-        (lambda: displacement_body(block(), 0.3, np.nan), "is outside 0 <= stretch <= 2"),
-        (lambda: mixed_body(block(), 0.0, 0.1, ElementQuad2()), "poisson = 0 leaves the pressure undetermined"),
+        (lambda: material_body(block(), 0.3, 3.0), "is outside 0 <= stretch <= 2"),
+        (lambda: material_body(block(), 0.3, np.nan), "is outside 0 <= stretch <= 2"),
+        (lambda: material_body(block(), 0.0, 0.1, ElementQuad2()), "poisson = 0 leaves the pressure undetermined"),
         (lambda: problem_of(block(), 0.1, far_field=free), "rigid_compliance"),
     ],
 )

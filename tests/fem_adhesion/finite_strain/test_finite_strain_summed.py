@@ -14,7 +14,7 @@ from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import sliding
 from fem_adhesion.elasticity.reference import reference_functions
 from fem_adhesion.elasticity.space import Space, scatter
-from fem_adhesion.finite_strain.body import displacement_body
+from fem_adhesion.finite_strain.body import material_body
 from fem_adhesion.finite_strain.problem import finite_strain_problem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.mesh import spheres
@@ -46,7 +46,7 @@ def hemisphere(ratio):
     condensed = condense(space, POISSON, far_field=sliding)
     linear = ContactProblem(condensed.operator, TABOR, profile=SphereSurface(R))
     event = find_events(trace_charts((Chart(linear, condensed.unknowns),), 0.5))["pull_off"]
-    exterior, body = sliding(space, POISSON), displacement_body(space, POISSON, 1 / R)
+    exterior, body = sliding(space, POISSON), material_body(space, POISSON, 1 / R)
     convention = convention_of("projected", POISSON)
     problem = finite_strain_problem(body, exterior, TABOR, profile=SphereSurface(R), convention=convention)
     return SimpleNamespace(problem=problem, event=event, stretch=1 / R)

@@ -14,7 +14,7 @@ from fem_adhesion import HalfSpace, Hemisphere, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.elasticity import stress
-from fem_adhesion.elasticity.cells import cell_quadrature
+from fem_adhesion.elasticity.cells import Cells, cell_quadrature
 from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.stress import sampled
 from fem_adhesion.fields import states_along
@@ -207,7 +207,7 @@ def buried(states, tmp_path_factory):
 def _projected(space, number, function):
     """Coefficients of a component of a field of (r, z) in the element's functions."""
     places = cell_quadrature(space)[0]
-    return stress.projection(space, function(*stress.positions(space, places))[number][None])[0]
+    return stress.projection(Cells.of(space), function(*stress.positions(space, places))[number][None])[0]
 
 
 def test_the_components_are_those_of_a_known_field(buried):
