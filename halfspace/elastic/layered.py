@@ -270,8 +270,11 @@ def _remainder(
 ) -> Part:
     """Images between two contact radii, integrated up to a radius beyond the wider one, or beyond the widest."""
     radii = chebyshev_lengths(low, high, degree)
-    until = (max(high, widest) + beyond) / float(radii.min())
-    return Part(radii, lambda: image_kernels(images.in_units(radii, left), unit, until))
+    return Part(radii, partial(_in_units, images, unit, max(high, widest) + beyond, left, radii))
+
+
+def _in_units(images: Images, unit: ElasticOperator, until: float, left: float, radii: Array) -> Array:
+    return image_kernels(images.in_units(radii, left), unit, until / float(radii.min()))
 
 
 def _blocks(count: int, size: int) -> list[slice]:
