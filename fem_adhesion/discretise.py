@@ -85,7 +85,9 @@ def discretise(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
     rim, counter = lines[len(core) - 1 :], scene.counter
     if counter is None:
         first = _condensed(scene.body, mesh_of(scene, core, how), how)
-        surface = _own_surface(first, scene.sphere_radius) if scene.body.file else scene.surface
+        own, R = first.surface, scene.sphere_radius
+        given = scene.body.file is not None
+        surface = TabulatedSurface(own.radii, R * own.depths, R * own.slopes) if given else scene.surface
         operator = first.operator
         if scene.body.layered and len(rim) > 1:  # strata that are far out and rigid
             operator = with_rigid_rim(operator, rim, FLAT)
@@ -164,12 +166,6 @@ def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
     held = exterior.of_material(FAR_FIELDS[body.held], body.beyond)
     stiffness = stiffness_of(space, body.regions)
     return condense(space, material.poisson, far_field=held, stiffness=stiffness, traction=material.area)
-
-
-def _own_surface(body: CondensedBody, R: float) -> Surface:
-    """Surface of a mesh that is given."""
-    surface = body.surface
-    return TabulatedSurface(surface.radii, R * surface.depths, R * surface.slopes)
 
 
 def pair_meshes(scene: Scene, counter: Body, core: Array, how: Discretisation) -> tuple[Any, Any]:

@@ -235,11 +235,13 @@ def half_space_beside(state: State) -> Beside:
     NotConverged if the half-space has no such state.
     """
     source, tabor = state.problem.operator.at(1.0), state.scene.tabor
-    cells = _clear_of(source.cells, float(state.observables[CONTACT_RADIUS]))
+    gap, radius = (float(value) for value in state.observables[[CENTRAL_GAP, CONTACT_RADIUS]])
+    cells = _clear_of(source.cells, radius)
     operator = panels_of(state.scene.body.layered, cells, min(source.cell_nodes.shape[1], 16))
     problem = ContactProblem(operator, tabor, state.problem.law, state.problem.profile)
     start = np.append(source.values_at(operator.radii, state.gap), state.point.x[-2:])
-    solution = newton.solve(problem, start, _same(state.observables))
+    control = newton.central_gap(gap) if np.isnan(radius) else newton.contact_radius(radius)
+    solution = newton.solve(problem, start, control)
     P, H = problem.pressure(solution.x), solution.x[:-2]
     radii = state.surface.radii
     return Beside(operator.values_at(radii, P), operator.values_at(radii, H), solution.observables)
@@ -257,11 +259,6 @@ def _clear_of(cells: Array, radius: float) -> Array:
     moved = cells.copy()
     moved[nearest] = (cells[nearest] + cells[other]) / 2
     return moved
-
-
-def _same(observables: Array) -> newton.Control:
-    radius = float(observables[CONTACT_RADIUS])
-    return newton.central_gap(float(observables[CENTRAL_GAP])) if np.isnan(radius) else newton.contact_radius(radius)
 
 
 def gaps_at(event: Located, radii: Array) -> Array:

@@ -64,11 +64,6 @@ class Deformation(Valued):
         hoop, plane = self.gradient[0], self.plane_dilatation
         return np.asarray(hoop + plane + self.stretch * hoop * plane)
 
-    @property
-    def volume_ratio(self) -> Array:
-        """J; the material is turned inside out where it is not positive."""
-        return np.asarray(1 + self.stretch * self.dilatation)
-
     @cached_property
     def log_volume(self) -> Array:
         """ln(J)/delta, which tends to the trace of A as delta -> 0; nan where the material is turned inside out."""
@@ -228,7 +223,7 @@ class Body(Valued):
 
     def least_volume_ratio(self, u: Array) -> float:
         """Least J at any quadrature point; the body is turned inside out where it is not positive."""
-        return float(self.deformation(u).volume_ratio.min())
+        return 1 + self.stretch * float(self.deformation(u).dilatation.min())
 
     def log_volumes(self, u: Array) -> Array:
         """Integral of ln(J)/delta with each pressure function, (M,)."""

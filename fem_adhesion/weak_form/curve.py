@@ -144,7 +144,8 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settin
             finer = path.event_near(path.taken_over(found[name]), condition_of(name))
             told[name], found[name] = _event(name, found[name], finer, how.found), finer
         tolerance = Tolerance.on(told, rtol)
-        open_events = [name for name, event in told.items() if tolerance.missed_by(event) or _rough(event, rtol)]
+        rough = [name for name, event in told.items() if event.contact_radius_error > rtol * event.contact_radius]
+        open_events = [name for name, event in told.items() if name in rough or tolerance.missed_by(event)]
         for n in open_points:
             finer = path.taken_over(points[n])
             errors[n], points[n] = np.abs(finer.observables - points[n].observables), finer
@@ -184,11 +185,6 @@ def _paths(scene: Scene, rtol: float, to_load: float, how: Settings) -> Iterator
     mesh = box(np.append(fine, swept + how.growth * beyond), beyond)
     for degree in how.degrees:
         yield Path(Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), mu, endless=False), swept)
-
-
-def _rough(event: Event, rtol: float) -> bool:
-    """Whether the contact radius is less accurate than that."""
-    return event.contact_radius_error > rtol * event.contact_radius
 
 
 def _event(name: str, coarse: Point, fine: Point, found: float) -> Event:

@@ -120,7 +120,7 @@ class Layers:
     base: Foundation | Substrate = "bonded"
 
     def __init__(self, strata: Sequence[Stratum], base: Foundation | Substrate = "bonded") -> None:
-        keep(self, strata=tuple(strata), base=_require_base(base))
+        keep(self, strata=tuple(strata), base=base if isinstance(base, Substrate) else require_foundation(base))
         if not self.strata or self.strata[0].modulus != 1:
             first = f"modulus = {self.strata[0].modulus:g} of the first stratum" if self.strata else "strata = []"
             raise InputError(f"{first} does not serve, limit: one stratum or more, the first of modulus 1; see Stratum")
@@ -207,10 +207,6 @@ def _waves(zeta: Array, nu: float) -> Array:
         [-one, -(zeta + 2 - 2 * nu), -one, zeta - 2 + 2 * nu],
     ]
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
-
-
-def _require_base(base: Foundation | Substrate) -> Foundation | Substrate:
-    return base if isinstance(base, Substrate) else require_foundation(base)
 
 
 def require_foundation(foundation: Foundation) -> Foundation:
