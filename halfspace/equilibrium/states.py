@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import Stage, placed, settled
+from halfspace.equilibrium.charts import Stage, placed, settled, transfer
 from halfspace.equilibrium.conditions import (
     FOLD,
     LOCATE,
@@ -29,8 +29,10 @@ from halfspace.equilibrium.conditions import (
     between,
     hermite,
     rounding,
+    same_place,
+    seen_from,
 )
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.events import ErrorRule, errors_of
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
@@ -252,9 +254,12 @@ class FinestCurve(Valued):
         for part in parts:
             for a, b in pairwise(part.points):
                 if condition.of(a) * condition.of(b) <= 0 and b.arclength > a.arclength:
-                    bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
-                    return part.problem, between(part.problem, a, b, condition, self.metric).point, bend
+                    return part.problem, *self._met(part.problem, a, b, condition)
         # Between the last point on one discretisation and the first on the next, either of which may not have it.
+        known = [part for part in parts if not self._is_left_behind(part.problem)] or parts
+        for problem, a, b in (bridge for before, after in pairwise(known) for bridge in self._bridges(before, after)):
+            if condition.of(a) * condition.of(b) <= 0:
+                return problem, *self._met(problem, a, b, condition)
         nearest = [(part, min(part.points, key=lambda p: abs(condition.of(p)))) for part in parts]
         nearest.sort(key=lambda one: (self._is_left_behind(one[0].problem), abs(condition.of(one[1]))))
         gaps = [self.metric.distance(a.points[-1], b.points[0]) for a, b in pairwise(parts)]
@@ -274,6 +279,30 @@ class FinestCurve(Valued):
         if self.metric.distance(point, near) > reach:
             raise NotConverged(f"no state at {condition.value:.6g} is found between two grids; take a smaller rtol")
         return point
+
+    def _met(self, problem: Traceable, a: Point, b: Point, condition: Condition) -> tuple[Point, float]:
+        """State between two points that meets a condition, and the observable's second derivative there."""
+        k = condition.observable
+        bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
+        return between(problem, a, b, condition, self.metric).point, bend
+
+    def _bridges(self, before: Segment, after: Segment) -> Iterator[tuple[Traceable, Point, Point]]:
+        """Last point on one discretisation and first on the next, both on either of these that has them."""
+        last, first = before.points[-1], after.points[0]
+        for problem, other, point in (
+            (before.problem, after.problem, first),
+            (after.problem, before.problem, last),
+        ):
+            if problem.interface.follows_contact and np.isnan(point.observables[CONTACT_RADIUS]):
+                continue
+            start = transfer(other, point.x, problem)
+            try:
+                there = same_place(point, problem, start, self.metric)
+            except NotConverged:
+                continue
+            a, b = (last, there) if point is first else (there, first)
+            if (b := seen_from(a, b, self.metric)).arclength > a.arclength:
+                yield problem, a, b
 
     def _is_left_behind(self, problem: Traceable) -> bool:
         return any(problem is one for one in self.left_behind)

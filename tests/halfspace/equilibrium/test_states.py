@@ -461,3 +461,12 @@ def test_a_state_between_two_grids_is_on_the_branch_that_was_asked_for():
     path = halfspace.trace(0.7833, body=halfspace.Layer(20.0, 0.3, "sliding"), rtol=1e-4)
     state = path.at(load=np.linspace(-3.34, -3.09, 40), branch="separated")
     assert np.all(np.abs(state.approach + 1.3245) < 0.003)
+
+
+def test_a_state_is_found_where_two_grids_are_far_apart():
+    """Newton's method led to it neither from the last point on one, a turn of the load, nor from the other's first."""
+    coarse, fine = (
+        halfspace.trace(0.15, law=Dlvo(0.37, 1.14), to_load=7.79, rtol=rtol).at(load=-4.117, branch="unstable 2")
+        for rtol in (2e-5, 2e-7)
+    )
+    assert abs(coarse.approach - fine.approach) <= coarse.approach_error + fine.approach_error
