@@ -27,8 +27,8 @@ from halfspace.elastic.operators import (
     kernels_of,
 )
 from halfspace.equilibrium.charts import COMPRESSION, Chart
-from halfspace.equilibrium.contact import WIDEST, contact_of
-from halfspace.errors import ContactTooWide, GridTooLarge
+from halfspace.equilibrium.contact import WIDEST, contact_of, require_narrow
+from halfspace.errors import GridTooLarge
 from halfspace.profiles import Surface
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
@@ -44,7 +44,7 @@ class ChartSettings:
     equal: int = 3  # cells of equal length on the axis, which carry a contact wherever it ends in them
     leave: float = 0.8  # of these cells: the contact radius at which the curve leaves the chart on the axis
     events: float = 1.0  # cells: the radius at which an event does
-    farther: float = 2.0  # times the widest contact that is planned for, as a rigid one on a blunt cone is
+    farther: float = 3.0  # times the widest contact that is planned for, as a rigid one on a blunt cone is
     nearly: float = 0.99  # of a body, which the last point of a curve may be as wide as
     most: int = 16  # operators in a part of a chart: each state combines them all
     together: int = 4  # grids integrated at once: with all of a curve's it took 0.18 GB more, and no less time
@@ -117,11 +117,7 @@ class SizedBody(Valued):
     def _end_beyond(self, edge: float) -> float:
         """End of the cells that move with a contact edge; ContactTooWide unless they reach beyond it."""
         end = float(self.outer[0])
-        if edge >= end:
-            raise ContactTooWide(
-                f"contact radius = {edge:.3g} beta, limit: {end:.3g}, beyond which the body is taken as rigid; take a "
-                "blunter tip, a thicker layer or the half-space solver"
-            )
+        require_narrow(edge, CHARTS.nearly * end)
         return end
 
     def centred(self) -> Chart:
@@ -153,6 +149,7 @@ class SizedBody(Valued):
         """
         body, end = self.scales.profile.end, float(self.coordinate.radius(CHARTS.nearly * self.outer[:1])[0][0])
         widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * body)
+        require_narrow(widest, end)
         farther = max(widest, min(CHARTS.farther * widest, CHARTS.nearly * body, end))
         ends, counts = self._parts(min(self.leave, widest / 2), farther, error)
         return self.centred(), self.over(ends, counts, widest)

@@ -32,6 +32,11 @@ class Operator(ABC):
         return 0.0
 
     @property
+    def widest_radius(self) -> float:
+        """Widest contact radius that it serves, in beta."""
+        return np.inf
+
+    @property
     @abstractmethod
     def axis_row(self) -> Array:
         """Row (q,) that interpolates nodal values on the axis."""

@@ -191,8 +191,13 @@ class Interpolated(Valued, Operator):
 
     @property
     def least_radius(self) -> float:
-        """Least contact radius that it serves; of wide ones any."""
+        """Least contact radius that it serves."""
         return float(self.scales[0])
+
+    @property
+    def widest_radius(self) -> float:
+        """Widest contact radius that it serves."""
+        return float(self.scales[-1])
 
     @cached_property
     def axis_row(self) -> Array:

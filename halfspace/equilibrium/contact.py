@@ -25,7 +25,7 @@ from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 from halfspace.elastic.compliance import ElasticOperator, Operator
 from halfspace.elastic.grid import polynomial
 from halfspace.equilibrium.acting import Acting, by_straight_lines
-from halfspace.errors import GridTooCoarse, NotConverged
+from halfspace.errors import ContactTooWide, GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.scales import Scales
@@ -263,7 +263,7 @@ class ContactProblem(Valued):
         return appended(here.gradients @ v, 0.0 if np.isnan(here.contact_radius) else float(here.radius_gradient @ v))
 
     def require_resolution(self, x: Array) -> None:
-        """Refuse a state whose contact edge stands where the grid is too coarse for the spike of tension there.
+        """Refuse a state whose contact edge stands where the grid is too coarse for the spike of tension, or beyond it.
 
         Linear interpolation wants ten intervals in the spike's width, polynomials fewer (`widest_interval`). A coarser
         grid still converges, to a pull-off force that is too large ([G97] 4b). GridTooCoarse tells the spacing, its
@@ -272,6 +272,7 @@ class ContactProblem(Valued):
         radius, body = self.contact_radius(x), self.operator_at(x)
         if np.isnan(radius):
             return
+        require_narrow(radius, self.operator.widest_radius)
         spacing, intervals = body.spacing(radius), max(body.cell_nodes.shape[1] - 1, 1)
         limit = self.scales.spike_width * widest_interval(body.cell_nodes.shape[1])
         if spacing > limit * (1 + 1e-9):
@@ -348,6 +349,15 @@ def _last_but_one(coefficients: Array) -> float:
         return known
     before, last = coefficients[-5], coefficients[-3]
     return max(known, float(last * min(1.0, last / before)) if before else 0.0)
+
+
+def require_narrow(radius: float, limit: float) -> None:
+    """Raise ContactTooWide if a contact radius exceeds a limit, in beta."""
+    if radius > limit:
+        raise ContactTooWide(
+            f"contact radius = {radius:.3g} beta, limit: {limit:.3g}, beyond which the body is taken as rigid; take a "
+            "blunter tip, a thicker layer or the half-space solver"
+        )
 
 
 def contact_of(scales: Scales, operator: Operator) -> ContactProblem:

@@ -18,7 +18,7 @@ from halfspace.elastic.grid import polynomial
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LARGEST, LOAD, ContactProblem
 from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
-from halfspace.errors import GridTooCoarse, IllPosed, NotConverged
+from halfspace.errors import ContactTooWide, GridTooCoarse, IllPosed, NotConverged
 from halfspace.values import Array, Valued
 
 
@@ -240,10 +240,10 @@ def follow(
 
 
 def _carried(problem: Equilibrium, point: Point) -> bool:
-    """Whether a discretisation is fine enough for a point, and its equations well-posed there."""
+    """Whether a discretisation is wide and fine enough for a point, and its equations well-posed there."""
     try:
         problem.require_resolution(point.x)
-    except (GridTooCoarse, IllPosed):
+    except (ContactTooWide, GridTooCoarse, IllPosed):
         return False
     return True
 
