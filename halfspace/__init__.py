@@ -23,8 +23,8 @@ undeformed pole would be eps from the wall, so it includes the yield of the whol
 R/beta its root over that of mu. An approach has no natural zero, so its size is no measure of anything: errors, budgets
 and deviations of approaches are relative to eps and the range of the approaches of all events of the curve.
 
-From a call to an event with its error: `trace` checks what is asked and takes the charts of the contact.
-`half_space_charts`, or its like, makes them: one on a grid fine on the axis, one on a grid that follows the edge.
+From a call to an event with its error: `trace` checks what is asked and says how the contact is discretised.
+`half_space_charts`, or its like, makes the charts: one on a grid fine on the axis, one on a grid that follows the edge.
 `climb` goes up the ladder of rungs until the tolerance is met. `trace_charts` traces the curve on the lowest rung.
 `find_events` finds which events it has and solves for each there. `on_all` solves for them again on a finer rung and on
 its twin of other cells. `turning_point` is Newton's method for a fold or an extremum, `solve` that for a given value.

@@ -4,13 +4,14 @@ In the order of reading: `trace` (from a tolerance to a curve), `grids` (how fin
 contact radius), `kernels` (the pressure by panels, or by triangles or bands as in 1997), `stages` (events from one grid
 to the next, and what their changes say of the error), `refinement` (the ladder of ever finer stages), `further_folds`
 (those between the jumps, when they are asked for), `finite_bodies` (bodies with a length, whose operator changes with
-the contact), `layered` (for layers and coatings, most of which is the half-space's), `standing` (grids that stand
-still, as a reference), `sweep` (many curves as arrays).
+the contact), `layered` (for layers and coatings, most of which is the half-space's), `standing` (their events, each on
+a grid of its own that stands still), `sweep` (many curves as arrays).
 
 An elastic body without a length of its own is homogeneous, so one compliance matrix serves every contact radius: the
 grid breathes with the contact, the radius joins the unknowns, and the spike of tension at the contact edge, whose width
 falls as 1/mu^2, stays on the same nodes. That is why 100 to 200 unknowns give eight digits.
 
 A sphere is not homogeneous. Its compliance on a grid that follows the contact edge is still a smooth function of the
-contact radius: curve and events are solved for on a polynomial through some ten to twenty radii.
+contact radius: the curve is followed on polynomials, each through some ten radii, made as the contact reaches them. An
+event, whose place the curve tells, has a grid of its own that stands still: one operator.
 """
