@@ -68,7 +68,6 @@ def test_it_changes_with_the_code_that_computes_alone(tree, name, counts):
 def test_it_knows_every_module_that_a_case_loads():
     code = (
         "import sys, halfspace, fem_adhesion\n"
-        "from fem_adhesion.finite_sphere.study import plan\n"
         "from fem_adhesion.finite_sphere.cases import compute, case_of\n"
         "for name in ('half_space', 'sphere'):\n"
         "    compute(case_of(name, 0.3, 100.0, 0.3, 1e-2))\n"
@@ -79,7 +78,7 @@ def test_it_knows_every_module_that_a_case_loads():
     kept = {f"fem_adhesion.common.{name}" for name in ("store", "jobs", "facts", "files", "progress", "numbers")} | {
         "fem_adhesion.common"
     }
-    assert loaded - kept - {"fem_adhesion.finite_sphere.study"} <= set(sources(CASES))
+    assert loaded - kept <= set(sources(CASES))
 
 
 @pytest.mark.parametrize("library", ["numpy", "scipy", "scikit-fem"])
