@@ -109,16 +109,14 @@ class SizedBody(Valued):
         return min(CHARTS.equal * self.length, float(self.outer[0]) / 2)
 
     def lines(self, edge: float = 0.0) -> Array:
-        """Ends of all cells that are finest at a contact edge, in the surface's coordinate, or on the axis."""
-        end, until = self._end_beyond(edge), edge or self._reach
+        """Ends of all cells that are finest at a contact edge, in the surface's coordinate, or on the axis.
+
+        ContactTooWide unless the cells that move reach beyond the edge.
+        """
+        end, until = float(self.outer[0]), edge or self._reach
+        require_narrow(edge, CHARTS.nearly * end)
         lines = grid.graded(edge, self.length, end, growth=self._growth, last=self.last, until=until)
         return np.concatenate([grid.towards_axis(lines, self.first, self._growth), self.outer[1:]])
-
-    def _end_beyond(self, edge: float) -> float:
-        """End of the cells that move with a contact edge; ContactTooWide unless they reach beyond it."""
-        end = float(self.outer[0])
-        require_narrow(edge, CHARTS.nearly * end)
-        return end
 
     def centred(self) -> Chart:
         """Chart fine on the axis."""
@@ -170,7 +168,7 @@ class SizedBody(Valued):
         """
         x = [self.coordinate.of(a) for a in ends]
         edge = self.coordinate.of(widest)
-        rest = self._end_beyond(edge) - x[0]
+        rest = float(self.outer[0]) - x[0]
         inner = 1 - grid.geometric(1.0, 2 * self.length / edge, self._growth)[::-1]
         inner = grid.towards_axis(inner, self.first / widest, self._growth)
         moving = self._moving(inner, grid.geometric(rest, self.length, self._growth, self.last) / rest)

@@ -24,7 +24,7 @@ from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
 from halfspace.elastic.compliance import ElasticOperator, Operator
 from halfspace.elastic.grid import polynomial
-from halfspace.equilibrium.acting import Acting, by_straight_lines
+from halfspace.equilibrium.acting import Acting
 from halfspace.errors import ContactTooWide, GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
@@ -218,10 +218,6 @@ class ContactProblem(Valued):
         body = self.operator_at(x)
         nodes = body.cell_nodes[0]
         return np.asarray(polynomial(body.radii[nodes] ** 2, radii**2) @ self.deflection(x)[nodes] - x[-2])
-
-    def radius_at_gap(self, x: Array, gap: float) -> float:
-        """Largest radius in beta at which the gap is about that, by straight lines between nodes; 0 if it is wider."""
-        return by_straight_lines(self.radii(x), x[:-2], gap)
 
     def ripples(self, x: Array) -> Array:
         """What the deflection's polynomials end with on the axis, in eps, and at the contact edge, in beta, (2,).
