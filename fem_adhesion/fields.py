@@ -32,7 +32,7 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import EVENTS
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Point
-from halfspace.errors import InputError
+from halfspace.errors import InputError, required
 from halfspace.values import Array, Mask, Valued
 
 FIELDS = Discretisation(degree=6)  # displacement and stress are those of degree 9 to 5e-5 and 1e-3 of their maxima
@@ -207,7 +207,7 @@ def _spread(path: EquilibriumPath, count: int | None) -> list[tuple[Traceable, P
 
 def _solved(made: Discretised, source: Traceable, point: Point, name: str) -> State:
     scene, problem, body = made.scene, made.problem, made.first
-    new = same_place(point, problem, transfer(source, point.x, problem), metric_for(problem))
+    new = required(same_place(point, problem, transfer(source, point.x, problem), metric_for(problem)))
     problem.require_resolution(new.x)
     u = body.displacement(problem.pressure(new.x)[: body.surface.radii.size])
     space, u, stress = recovered_stresses(body.space, scene.body.regions, u)

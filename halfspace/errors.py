@@ -3,7 +3,13 @@
 Every other exception is a defect of the program, and shows its traceback.
 """
 
+from __future__ import annotations
+
 import math
+from dataclasses import dataclass
+from typing import Literal, TypeVar, final
+
+T = TypeVar("T")
 
 
 class InputError(ValueError):
@@ -42,3 +48,25 @@ class GridTooCoarse(NotConverged):
     def __str__(self) -> str:
         """Return the message alone."""
         return str(self.args[0])
+
+
+@final
+@dataclass(frozen=True)
+class Unsolved:
+    """What a solver returns in the place of a solution: the reason why there is none, with the remedy.
+
+    It is false, so that ``first or second`` is the second where the first is not solved. Where no other way is left to
+    try `required` raises it as NotConverged.
+    """
+
+    reason: str
+
+    def __bool__(self) -> Literal[False]:
+        return False
+
+
+def required(outcome: T | Unsolved) -> T:
+    """Return a solution, or raise NotConverged with the reason why there is none."""
+    if isinstance(outcome, Unsolved):
+        raise NotConverged(outcome.reason)
+    return outcome

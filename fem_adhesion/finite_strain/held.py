@@ -28,7 +28,6 @@ from fem_adhesion.elasticity.exterior import Exterior
 from fem_adhesion.finite_strain.body import Body
 from fem_adhesion.finite_strain.settings import USUAL, Settings
 from halfspace.equilibrium.contact import Solver, count_negative
-from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Valued
 
 
@@ -48,13 +47,13 @@ class Tangent(Factors):
     def bordered(self, change: Array, row: Array) -> Callable[[Array], Array]:
         """Solver of the equations with the law's tangent, for right-hand sides (n + 1,).
 
-        The change (m, m + 1) is (S, b), the row (m + 1,) that of the control. NotConverged if they make it singular.
+        The change (m, m + 1) is (S, b), the row (m + 1,) that of the control. All nan if they make it singular.
         """
         matrix = np.vstack([change, row])
         matrix[:-1, :-1] += self.stiffness
-        lu, pivots, info = dgetrf(matrix, overwrite_a=True)
-        if info > 0:
-            raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start")
+        lu, pivots, singular = dgetrf(matrix, overwrite_a=True)
+        if singular:
+            lu[:] = np.nan
 
         def solve(rhs: Array) -> Array:
             x = self.carried(rhs[:-1])

@@ -40,7 +40,7 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import REMAINING, ErrorRule, Event
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.search import find_events
-from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
+from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged, Unsolved
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array, Valued
 
@@ -143,12 +143,9 @@ def _counted(event: Located, scene: Scene) -> Array:
     convention, problem = convention_of(scene.material.traction, scene.poisson), event.problem
     if not isinstance(problem, FiniteStrainProblem) or problem.convention == convention:
         return event.point.observables
-    try:
-        require_well_posed(scene)
-        other = replace(problem, convention=convention)
-        return relocate(event, other, event.point.x, metric_for(other)).point.observables
-    except (InputError, NotConverged):
-        return np.full(len(NUMBERS), np.nan)
+    other = replace(problem, convention=convention)
+    found = softening(scene) < 1 and relocate(event, other, event.point.x, metric_for(other))
+    return found.point.observables if found else np.full(len(NUMBERS), np.nan)
 
 
 def find_jumps(scene: Scene, rtol: float = 1e-4, settings: Settings = USUAL) -> dict[str, Event]:
@@ -202,7 +199,7 @@ def _cause_told(scene: Scene, settings: Settings) -> Iterator[None]:
 class Raising(Standing):
     """A stage on which events of the linear body are solved for at finite strain, each on a mesh of its own."""
 
-    def moved(self, event: Located, problem: Traceable) -> Located:
+    def moved(self, event: Located, problem: Traceable) -> Located | Unsolved:
         """Solve for an event again, of a linear body by raising its strain."""
         if not isinstance(problem, FiniteStrainProblem):
             return moved(event, problem)
@@ -212,29 +209,29 @@ class Raising(Standing):
         return found
 
 
-def raised(event: Located, problem: FiniteStrainProblem) -> Located:
+def raised(event: Located, problem: FiniteStrainProblem) -> Located | Unsolved:
     """Solve for an event of the linear body at finite strain, raising delta in as many parts as that takes.
 
     First the linear body is solved on the mesh of the problem. A state is the start for the next one as it is: at the
-    same gaps the law's forces are the same, and only those of the body change. NotConverged if a small part of delta is
-    too much.
+    same gaps the law's forces are the same, and only those of the body change. Unsolved if a small part of delta is too
+    much.
     """
     found, done, part = moved(event, problem.stretched(0.0)), 0.0, problem.stretch
     least = problem.held.settings.smallest_part
-    while done < problem.stretch:
+    while found and done < problem.stretch:
         last = done + part >= (1 - least) * problem.stretch
         target = problem if last else problem.stretched(done + part)
-        try:
-            found = relocate(found, target, found.point.x, metric_for(target))
-            done = target.stretch
-        except NotConverged as error:
-            part /= 2
-            if part < least:
-                approach, load = event.point.observables[[APPROACH, LOAD]]
-                raise NotConverged(
-                    f"the event at approach {approach:.6g} eps, load {load:.6g} R dgamma is lost at beta/R = "
-                    f"{target.stretch:.3g} ({error}); take a larger radius_ratio"
-                ) from error
+        farther = relocate(found, target, found.point.x, metric_for(target))
+        if farther:
+            found, done = farther, target.stretch
+            continue
+        part /= 2
+        if part < least:
+            approach, load = event.point.observables[[APPROACH, LOAD]]
+            return Unsolved(
+                f"the event at approach {approach:.6g} eps, load {load:.6g} R dgamma is lost at beta/R = "
+                f"{target.stretch:.3g} ({farther.reason}); take a larger radius_ratio"
+            )
     return found
 
 

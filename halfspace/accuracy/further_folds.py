@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
@@ -16,7 +15,7 @@ from halfspace.equilibrium.events import EVENTS, Event, Unconfirmed, numbered
 from halfspace.equilibrium.path import Point, Segment
 from halfspace.equilibrium.search import Chains, confirmed, turns
 from halfspace.equilibrium.states import met_again
-from halfspace.errors import NotConverged
+from halfspace.errors import Unsolved
 from halfspace.values import Valued
 
 T = TypeVar("T")
@@ -78,14 +77,10 @@ class FurtherFolds(Valued):
         traced = turns(self.segments, FOLD, slice(1, -1)) if self.segments else []
         return confirmed(traced, self._chains, self.jumps)
 
-    def _chains(self, fold: Located) -> Chains:
+    def _chains(self, fold: Located) -> Chains | Unsolved:
         for stage in self.before:  # where one does not have it, a later one may: its change is then from farther back
-            with suppress(NotConverged):
-                fold = met_again(stage, fold)
-        try:
-            return [[state[""] for state in chain] for chain in self.last.chains({"": fold})]
-        except NotConverged:
-            return []
+            fold = met_again(stage, fold) or fold
+        return self.last.chains_of(fold)
 
     def events(self) -> Mapping[str, Event]:
         """The folds with their errors."""

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import TypeVar
 
 from halfspace.equilibrium.charts import Chart, Stage
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.events import FOLDS, USUAL, ErrorRule, Event, estimate_event, is_event
 from halfspace.equilibrium.states import met_again
-from halfspace.errors import ContactTooWide, IllPosed, NotConverged
+from halfspace.errors import NotConverged, Unsolved
 from halfspace.values import Valued
 
+T = TypeVar("T")
 Charts = Sequence[Chart]
 State = Mapping[str, Located]
 
@@ -64,10 +66,22 @@ class Rung(Valued):
 
     def chains(self, state: State) -> list[list[State]]:
         """Chains of states from the rung below, and from its twin, to the last stage."""
-        chain = [state]
+        found = {name: _demanded(name, self.chains_of(event)) for name, event in state.items()}
+        lengths = [len(self.stages) + 1, *([2] if self.twin else [])]
+        return [[{name: found[name][i][j] for name in found} for j in range(n)] for i, n in enumerate(lengths)]
+
+    def chains_of(self, event: Located) -> list[list[Located]] | Unsolved:
+        """Those of one event."""
+        chain = [event]
         for stage in self.stages:
-            chain.append(on_all(chain[-1], stage))
-        return [chain, [on_all(chain[-1], self.twin), chain[-1]]] if self.twin else [chain]
+            found = met_again(stage, chain[-1])
+            if not found:
+                return found
+            chain.append(found)
+        if not self.twin:
+            return [chain]
+        other = met_again(self.twin, chain[-1])
+        return [chain, [other, chain[-1]]] if other else other
 
     def estimates(self, chains: Sequence[Sequence[State]]) -> dict[str, Event]:
         """Events of the last state, with their changes along the chains as errors."""
@@ -80,14 +94,12 @@ class FoldsLost(NotConverged):
 
 
 def on_all(state: State, stage: Stage) -> State:
-    """Solve for all events again on a stage."""
-    return {name: _found_again(name, event, stage) for name, event in state.items()}
+    """Solve for all events again on a stage, or raise NotConverged."""
+    return {name: _demanded(name, met_again(stage, event)) for name, event in state.items()}
 
 
-def _found_again(name: str, event: Located, stage: Stage) -> Located:
-    try:
-        return met_again(stage, event)
-    except (ContactTooWide, IllPosed):  # for any grid
-        raise
-    except NotConverged as error:
-        raise FoldsLost(str(error)) if name in FOLDS else error from error
+def _demanded(name: str, outcome: T | Unsolved) -> T:
+    """Return what was found of an event; raise FoldsLost or NotConverged if it is lost."""
+    if isinstance(outcome, Unsolved):
+        raise (FoldsLost if name in FOLDS else NotConverged)(outcome.reason)
+    return outcome

@@ -12,7 +12,7 @@ from halfspace.accuracy.stages import Charted, Discretised
 from halfspace.equilibrium.charts import Chart, Stage, moved, undeformed_radius
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.newton import Traceable
-from halfspace.errors import NotConverged
+from halfspace.errors import Unsolved
 
 NEAR = 0.1  # of the finest cell, that a contact may end away from the place for which a grid was made
 
@@ -70,15 +70,12 @@ class Standing(WhereAsked):
         radius = radius if radius > self.body.length else 0.0
         return self.serving(radius) or self.keep(radius - near, radius + near, self.body.standing(radius))
 
-    def moved(self, event: Located, problem: Traceable) -> Located:
+    def moved(self, event: Located, problem: Traceable) -> Located | Unsolved:
         """Solve for an event on a grid that stands still, or near to it on one that follows the contact.
 
         Over a grid that stands still Newton's method does not take an edge as sharp as it is between its cells far.
         """
-        try:
-            return moved(event, problem)
-        except NotConverged:
-            return moved(event, self.everywhere(event).problem)
+        return moved(event, problem) or moved(event, self.everywhere(event).problem)
 
     @cached_property
     def everywhere(self) -> Stage:

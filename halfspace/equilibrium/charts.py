@@ -14,11 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.conditions import FOLD, Located, nearest, relocate, same_place
+from halfspace.equilibrium.conditions import Located, nearest, relocate, same_place
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import (
-    PATH,
     WHOLE_BODY,
     Metric,
     Point,
@@ -26,10 +25,9 @@ from halfspace.equilibrium.path import (
     Steps,
     follow,
     loaded_to,
-    make_point,
-    passed,
+    solved_point,
 )
-from halfspace.errors import NotConverged
+from halfspace.errors import Unsolved, required
 from halfspace.values import Array, Valued
 
 COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwise
@@ -71,7 +69,7 @@ class Stage(Valued, ABC):
         """The same for every point of a path: itself, unless its charts are for events."""
         return self
 
-    def moved(self, event: Located, problem: Traceable) -> Located:
+    def moved(self, event: Located, problem: Traceable) -> Located | Unsolved:
         """Solve for an event again on a chart made for where it was found."""
         return moved(event, problem)
 
@@ -98,8 +96,7 @@ def trace_charts(
         point = _hand_over(segments[-1], problem, metric) if segments else separated(problem, first, metric)
         ended = _ended(to_load, problem.interface.profile.end)
         stop, pace = _left(chart, ended), steps or _pace(problem, segments)
-        trail = [passed(s.problem, p.x, p.arclength) for s in segments[-1:] for p in s.points[-PATH.known : -1]]
-        segments.append(Segment(problem, tuple(follow(problem, point, metric, stop, steps=pace, trail=trail))))
+        segments.append(Segment(problem, tuple(required(follow(problem, required(point), metric, stop, steps=pace)))))
         if ended(segments[-1].points[-1]):
             break
     return tuple(segments)
@@ -140,22 +137,21 @@ def undeformed_radius(problem: Traceable, point: Point) -> float:
     return problem.interface.contact_radius(problem.surface_state(point.x))
 
 
-def separated(problem: Traceable, approach: float, metric: Metric) -> Point:
+def separated(problem: Traceable, approach: float, metric: Metric) -> Point | Unsolved:
     """Point on the separated branch at an approach, heading towards contact."""
     control = newton.approach(approach)
-    solution = newton.solve(problem, problem.undeformed(approach), control)
-    return make_point(problem, solution, metric, control.weights, 0.0)
+    return solved_point(problem, problem.undeformed(approach), control, metric, control.weights)
 
 
-def _hand_over(segment: Segment, problem: Traceable, metric: Metric) -> Point:
+def _hand_over(segment: Segment, problem: Traceable, metric: Metric) -> Point | Unsolved:
     """Solve the last state of a segment again on the next chart, at the same contact radius if there is one."""
     last = segment.points[-1]
     radius = float(last.observables[CONTACT_RADIUS])
     start = transfer(segment.problem, last.x, problem)
     if np.isnan(radius):
         return same_place(last, problem, start, metric)
-    solution = newton.solve(problem, start, newton.contact_radius(radius))
-    return make_point(problem, solution, metric, metric.weights * last.rates, last.arclength)
+    direction = metric.weights * last.rates
+    return solved_point(problem, start, newton.contact_radius(radius), metric, direction, last.arclength)
 
 
 def transfer(source: Traceable, x: Array, target: Traceable) -> Array:
@@ -180,37 +176,37 @@ def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:
     return np.asarray(source.tabor * source.load(x) / (np.pi * radii))
 
 
-def placed(finest: Stage, problem: Traceable, point: Point) -> tuple[Traceable, Point]:
-    """Solve for a point of the path again on another discretisation, in the plane across the path at that point.
+def placed(stage: Stage, state: Located) -> Located | Unsolved:
+    """Solve for a state again on another discretisation, in the plane across the path there.
 
-    Where the paths wind too differently for the plane across one to meet the other, for the state nearest to the point.
+    Where the paths wind too differently for the plane across one to meet the other, for the state nearest to it.
     """
-    target = finest(Located(FOLD, problem, point, 1.0)).problem
-    if target is problem:
-        return problem, point
-    start, metric = transfer(problem, point.x, target), metric_for(target)
-    try:
-        return target, same_place(point, target, start, metric)
-    except NotConverged:
-        return target, nearest(point, target, start, metric)
+    problem, point = stage(state).problem, state.point
+    if problem is state.problem:
+        return state
+    start, metric = transfer(state.problem, point.x, problem), metric_for(problem)
+    there = same_place(point, problem, start, metric) or nearest(point, problem, start, metric)
+    return there and replace(state, problem=problem, point=there)
 
 
-def moved(event: Located, problem: Traceable) -> Located:
+def moved(event: Located, problem: Traceable) -> Located | Unsolved:
     """Solve for an event again on another discretisation."""
     start = transfer(event.problem, event.point.x, problem)
     return relocate(event, problem, start, metric_for(problem))
 
 
-def settled(state: Located, stage: Stage, solve: Callable[[Located, Traceable], Located]) -> Located:
+def settled(
+    state: Located, stage: Stage, solve: Callable[[Located, Traceable], Located | Unsolved]
+) -> Located | Unsolved:
     """Solve for a state on a stage, and once more wherever it comes to lie in the reach of another chart."""
-    found, tried = state, set[int]()
+    found: Located | Unsolved = state
+    tried = set[int]()
     for _ in range(MOVES + 1):
-        problem = stage(found).problem
-        if id(problem) in tried:
+        if not found or id(problem := stage(found).problem) in tried:
             return found
         tried.add(id(problem))
         found = solve(found, problem)
-    raise NotConverged("an event lies elsewhere on every grid that is made around it; take a smaller rtol")
+    return Unsolved("an event lies elsewhere on every grid that is made around it; take a smaller rtol")
 
 
 MOVES = 5  # of a state from chart to chart, after which the last must be one made for where it lies

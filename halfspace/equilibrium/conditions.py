@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import final
 
 import numpy as np
 
@@ -26,10 +27,10 @@ from halfspace.equilibrium.path import (
     grows_from_afar,
     least_slope,
     make_point,
-    predict,
+    plane_across,
+    solved_point,
 )
-from halfspace.errors import NotConverged
-from halfspace.roots import root
+from halfspace.errors import Unsolved, required
 from halfspace.values import Array, Valued
 
 ROUND_OFF = 1e-11  # what Newton's method, root finder and matrices leave, relative to 1 + the sizes of the terms
@@ -41,7 +42,7 @@ class ConditionSettings:
 
     shortest: float = 1e-12  # arclength to which a root is known
     shorter: int = 4  # steps in the place of one that hides a pair of roots
-    leap: float = 1e-3  # of what should vanish, in its largest value around: more is left where states leap
+    halvings: int = 20  # of an interval in which Newton's method does not find an event
     long: float = 0.05  # arclength in which a rate that nearly vanishes at an end may do so twice
     solved: float = 3e-9  # relative size of the last step: after 1e-8 loads that should be zero were up to 3e-11
     nearby: float = 0.3  # arclength within which an event is looked for on another discretisation at once
@@ -50,8 +51,7 @@ class ConditionSettings:
     longer: float = 3.0  # how many times the last a step may be
     widths: tuple[float, ...] = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
     feet: int = 8  # steps to the foot of a perpendicular
-    across: float = 1e-3  # of its length, what is left along the path
-    aslant: float = 0.1  # of its length, what may be left after so many steps: it is 0.005 longer then
+    aslant: float = 0.03  # of its length, what may be left along the path
 
 
 LOCATE = ConditionSettings()
@@ -115,6 +115,7 @@ EXTREMUM = Condition(LOAD, stationary=True)
 ZERO_LOAD = Condition(LOAD)
 
 
+@final
 @dataclass(frozen=True, eq=False, repr=False)
 class Located(Valued):
     """A root of a condition on one discretisation's path.
@@ -134,8 +135,9 @@ def rounding(problem: Traceable, x: Array) -> Array:
 
 
 def locate(problem: Traceable, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:
-    """Find every root of a condition between successive points of one discretisation's path."""
-    return [between(problem, a, b, condition, metric) for a, b in brackets(problem, points, metric, condition)]
+    """Find every root of a condition between successive points of one discretisation's path, or raise NotConverged."""
+    pairs = brackets(problem, points, metric, condition)
+    return [required(between(problem, a, b, condition, metric)) for a, b in pairs]
 
 
 def brackets(
@@ -147,9 +149,13 @@ def brackets(
         for a, b in pairwise(points)
         if b.arclength > a.arclength  # points solved for again may change places
         for c, d in _watched(problem, a, b, condition, metric)
-        if (condition.of(c) < 0) != (condition.of(d) < 0)  # their product is zero at a root, and where it underflows
-        and not _unfelt(c, d, condition)
+        if _changes(c, d, condition) and not _unfelt(c, d, condition)
     ]
+
+
+def _changes(a: Point, b: Point, condition: Condition) -> bool:
+    """Whether what should vanish changes its sign: the product would be zero at a root, and where it underflows."""
+    return (condition.of(a) < 0) != (condition.of(b) < 0)
 
 
 def _watched(
@@ -158,11 +164,8 @@ def _watched(
     """Halve the interval between two points as long as a pair of roots may hide in it, unseen at its ends."""
     if not depth or not _may_hide(a, b, condition, metric):
         return [(a, b)]
-    length = b.arclength - a.arclength
-    try:
-        points = [a, correct(problem, a, length / 2, hermite(problem, a, b, 0.5, metric), metric, iterations=20)]
-    except NotConverged:
-        points = wound(problem, a, b, metric)[:-1]
+    middle = part_way(problem, a, b, 0.5, metric)
+    points = [a, middle] if middle else required(wound(problem, a, b, metric))[:-1]
     points.append(seen_from(points[-1], b, metric))
     return [pair for c, d in pairwise(points) for pair in _watched(problem, c, d, condition, metric, depth - 1)]
 
@@ -173,7 +176,7 @@ def seen_from(a: Point, b: Point, metric: Metric) -> Point:
     return replace(b, arclength=a.arclength + step)
 
 
-def wound(problem: Traceable, a: Point, b: Point, metric: Metric) -> list[Point]:
+def wound(problem: Traceable, a: Point, b: Point, metric: Metric) -> list[Point] | Unsolved:
     """Points from one to the first past another, by shorter steps, where the curve winds too much for one."""
     step, past = (b.arclength - a.arclength) / LOCATE.shorter, metric.weights * b.rates
 
@@ -201,22 +204,33 @@ def _unfelt(a: Point, b: Point, condition: Condition) -> bool:
     return condition.stationary and max(abs(condition.of(a)), abs(condition.of(b))) < PATH.unfelt
 
 
-def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
+def between(
+    problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric, halvings: int = 0
+) -> Located | Unsolved:
     """Find the root between two points of which the second was reached from the first.
 
     Newton's method on the equilibrium together with the condition finds it from where the cubics through both points
-    have it; where that does not end between them, so does halving the interval, with the corrector at every trial.
+    have it. Where that does not end between them, as where the root is a turning point at one of the ends, it is tried
+    again in the half at whose ends the signs differ, until one end is the root but for rounding.
     """
-    length = b.arclength - a.arclength
-    part = _by_cubic(a, b, condition, metric)
+    length, part = b.arclength - a.arclength, _by_cubic(a, b, condition, metric)
     if part is not None:
-        try:
-            found = _solved(problem, condition, hermite(problem, a, b, part, metric), metric, a, length)
-        except NotConverged:
-            return bracketed(problem, a, b, condition, metric)
+        found = _solved(problem, condition, hermite(problem, a, b, part, metric), metric, a, length)
         if found and all(metric.distance(found.point, end) <= length for end in (a, b)):
             return found
-    return bracketed(problem, a, b, condition, metric)
+    end = min(a, b, key=lambda point: abs(condition.of(point)))
+    if abs(condition.of(end)) < ROUND_OFF:
+        return Located(condition, problem, end, (condition.of(b) - condition.of(a)) / length)
+    if halvings == LOCATE.halvings:
+        return Unsolved(
+            f"an event near approach {a.observables[0]:.6g} eps, load {a.observables[1]:.6g} R dgamma is lost: states "
+            "next to each other lie on different branches; take a smaller rtol"
+        )
+    middle = part_way(problem, a, b, 0.5, metric)
+    if not middle:
+        return middle
+    ends = (a, middle) if _changes(a, middle, condition) else (middle, seen_from(middle, b, metric))
+    return between(problem, *ends, condition, metric, halvings + 1)
 
 
 def _by_cubic(a: Point, b: Point, condition: Condition, metric: Metric) -> float | None:
@@ -232,42 +246,28 @@ def _by_cubic(a: Point, b: Point, condition: Condition, metric: Metric) -> float
 
 def _solved(
     problem: Traceable, condition: Condition, start: Array, metric: Metric, near: Point, reach: float
-) -> Located | None:
-    """Solve for a state that meets a condition from a start near a point; None if it is farther from it than that."""
-    direction = metric.weights * near.rates
+) -> Located | Unsolved:
+    """Solve for a state that meets a condition from a start near a point, no farther from it than the reach."""
+    direction, slope = metric.weights * near.rates, None
     if condition.stationary:
         turn = newton.turning_point(problem, start, condition.weights, direction, reach)
-        solution, slope = turn.solution, turn.slope
+        solution, slope = (turn.solution, turn.slope) if turn else (turn, None)
     else:
         control = Control(condition.weights, condition.value)
-        solution, slope = newton.solve(problem, start, control, tolerance=LOCATE.solved), None
+        solution = newton.attempt(problem, start, control, tolerance=LOCATE.solved)
+    if not solution:
+        return solution
     used = direction != 0
     step = float(direction[used] @ (solution.observables - near.observables)[used])
     point = make_point(problem, solution, metric, direction, near.arclength + step)
-    far = metric.distance(point, near) > reach or metric.along(near, point) <= 0
-    return None if far else Located(condition, problem, point, condition.rate(point) if slope is None else slope)
+    if metric.distance(point, near) > reach or metric.along(near, point) <= 0:
+        return Unsolved("the state found lies on another part of the path; take a smaller rtol")
+    return Located(condition, problem, point, condition.rate(point) if slope is None else slope)
 
 
-def bracketed(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
-    """Find the root between two points by halving the interval at worst, with the corrector at every trial."""
-    length = b.arclength - a.arclength
-    trials = {0.0: a, length: b}
-
-    def quantity(step: float) -> float:
-        if step not in trials:
-            trials[step] = correct(
-                problem, a, step, hermite(problem, a, b, step / length, metric), metric, iterations=20
-            )
-        return condition.of(trials[step])
-
-    step = root(quantity, 0.0, length, "an event; take a smaller rtol", xtol=LOCATE.shortest, rtol=1e-14)
-    part = max(LOCATE.leap, 2 * LOCATE.shortest / abs(length))  # what the root finder leaves of a short interval
-    if abs(quantity(step)) > part * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
-        raise NotConverged(
-            f"an event near approach {a.observables[0]:.6g} eps, load {a.observables[1]:.6g} R dgamma is lost: states "
-            "next to each other lie on different branches; take a smaller rtol"
-        )
-    return Located(condition, problem, trials[step], (condition.of(b) - condition.of(a)) / length)
+def part_way(problem: Traceable, a: Point, b: Point, part: float, metric: Metric) -> Point | Unsolved:
+    """Solve for the point at a part of the way between two points of which the second was reached from the first."""
+    return correct(problem, a, part * (b.arclength - a.arclength), metric, hermite(problem, a, b, part, metric))
 
 
 def hermite(problem: Traceable, a: Point, b: Point, t: float, metric: Metric) -> Array:
@@ -284,80 +284,81 @@ def hermite(problem: Traceable, a: Point, b: Point, t: float, metric: Metric) ->
     return np.asarray(a.x + problem.longest_step(a.x, x - a.x) * (x - a.x))
 
 
-def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located:
+def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located | Unsolved:
     """Solve for an event again on another discretisation, from a state transferred to it.
 
-    NotConverged if the event does not exist near `start` on that discretisation.
+    Unsolved if the event does not exist near `start` on that discretisation.
     """
     condition = event.condition
     if isinstance(condition, Steepest):
-        return steepest_from(problem, same_place(event.point, problem, start, metric), metric, LOCATE.widths[1:])
-    try:
-        found = _solved(problem, condition, start, metric, event.point, LOCATE.nearby)
-    except NotConverged:
-        found = None
+        nearby = same_place(event.point, problem, start, metric)
+        return nearby and steepest_from(problem, nearby, metric, LOCATE.widths[1:])
+    found = _solved(problem, condition, start, metric, event.point, LOCATE.nearby)
     return found if found and found.slope * event.slope > 0 else _searched(event, problem, start, metric)
 
 
-def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located:
+def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located | Unsolved:
     """Solve for an event farther off: in the plane across the path first, then along it to beyond the event."""
     condition, nearby = event.condition, same_place(event.point, problem, start, metric)
+    if not nearby:
+        return nearby
     step = -LOCATE.past * condition.of(nearby) / event.slope
     if abs(step) < LOCATE.shortest:
         return Located(condition, problem, nearby, event.slope)
     for _ in range(LOCATE.trials):
-        beyond = correct(problem, nearby, step, predict(problem, nearby, step), metric, iterations=20)
+        beyond = correct(problem, nearby, step, metric)
+        if not beyond:
+            return beyond
         left = condition.of(beyond) / condition.of(nearby)
         if left <= 0:
-            return bracketed(problem, nearby, beyond, condition, metric)
+            return between(problem, nearby, beyond, condition, metric)
         step *= min(1 + LOCATE.past * left / (1 - left), LOCATE.longer) if left < 1 else LOCATE.longer
     at = event.point.observables
-    raise NotConverged(
+    return Unsolved(
         f"the event at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma is not found again on another grid; "
         "take a smaller rtol"
     )
 
 
-def steepest_from(problem: Traceable, point: Point, metric: Metric, widths: Sequence[float] = LOCATE.widths) -> Located:
-    """Where the curve falls most steeply near a point: the least compliance, by parabolas ever narrower.
-
-    NotConverged if there is no such place near.
-    """
+def steepest_from(
+    problem: Traceable, point: Point, metric: Metric, widths: Sequence[float] = LOCATE.widths
+) -> Located | Unsolved:
+    """Where the curve falls most steeply near a point: the least compliance, by parabolas ever narrower."""
     for width in widths:
-        sides = [correct(problem, point, h, predict(problem, point, h), metric, iterations=20) for h in (-width, width)]
-        before, here, after = (STEEPEST.of(p) for p in (sides[0], point, sides[1]))
+        sides = [correct(problem, point, h, metric) for h in (-width, width)]
+        before, here, after = (STEEPEST.of(p) if p else math.nan for p in (sides[0], point, sides[1]))
         bend = before - 2 * here + after
         if not (np.isfinite(bend) and bend > 0):
-            raise NotConverged("the curve has no steepest fall here; take a smaller rtol")
+            return Unsolved("the curve has no steepest fall here; take a smaller rtol")
         step = float(np.clip((before - after) / (2 * bend), -3, 3)) * width
-        point = correct(problem, point, step, predict(problem, point, step), metric, iterations=20)
+        found = correct(problem, point, step, metric)
+        if not found:
+            return found
+        point = found
     return Located(STEEPEST, problem, point, 1.0)
 
 
-def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
+def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point | Unsolved:
     """Solve on another discretisation in the plane across the path at a given point."""
-    weights = metric.weights * point.rates
-    used = weights != 0
-    control = Control(weights, float(weights[used] @ point.observables[used]))
-    solution = newton.solve(problem, start, control)
-    return make_point(problem, solution, metric, weights, point.arclength)
+    across, weights = plane_across(point, metric)
+    return solved_point(problem, start, across, metric, weights, point.arclength)
 
 
-def nearest(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
+def nearest(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point | Unsolved:
     """State on another discretisation nearest to a point, from that at its contact radius, or at its central gap.
 
-    NotConverged if the path there winds too much to tell.
+    Unsolved if the path there winds too much to tell.
     """
     k = CENTRAL_GAP if np.isnan(point.observables[CONTACT_RADIUS]) else CONTACT_RADIUS
     control = Control(np.eye(4)[k], float(point.observables[k]))
     onwards = math.copysign(1.0, point.rates[k]) * control.weights
-    near = make_point(problem, newton.solve(problem, start, control), metric, onwards, point.arclength)
+    near = solved_point(problem, start, control, metric, onwards, point.arclength)
     for _ in range(LOCATE.feet):
+        if not near:
+            return near
         step = float((metric.weights * near.rates)[:3] @ (point.observables - near.observables)[:3])
         far = metric.distance(point, near)
-        if abs(step) < far * LOCATE.across:
-            break
-        near = correct(problem, near, step, predict(problem, near, step), metric, iterations=20)
-    if abs(step) > far * LOCATE.aslant:
-        raise NotConverged("no state on another grid is nearest to one of the curve's; take a smaller rtol")
-    return replace(near, arclength=point.arclength)
+        if abs(step) < far * LOCATE.aslant:
+            return replace(near, arclength=point.arclength)
+        near = correct(problem, near, step, metric)
+    return Unsolved("no state on another grid is nearest to one of the curve's; take a smaller rtol")

@@ -25,7 +25,7 @@ from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 from halfspace.elastic.compliance import ElasticOperator, Operator
 from halfspace.elastic.grid import polynomial
 from halfspace.equilibrium.acting import Acting
-from halfspace.errors import ContactTooWide, GridTooCoarse, NotConverged
+from halfspace.errors import ContactTooWide, GridTooCoarse
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.scales import Scales
@@ -156,9 +156,9 @@ class ContactProblem(Valued):
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
-        lu, pivots, info = dgetrf(self._bordered(x, row), overwrite_a=True)
-        if info > 0:
-            raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start")
+        lu, pivots, singular = dgetrf(self._bordered(x, row), overwrite_a=True)
+        if singular:
+            lu[:] = np.nan
         return lambda rhs, _=0.0: np.asarray(dgetrs(lu, pivots, rhs)[0])  # factors have all digits
 
     def observables(self, x: Array) -> Array:

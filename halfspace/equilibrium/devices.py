@@ -21,17 +21,16 @@ from types import MappingProxyType
 import numpy as np
 
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Stage, metric_for, separated, settled, transfer
 from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import FOLDS, ErrorRule, Event, Tolerance, approach_scale, estimate_event
 from halfspace.equilibrium.newton import Control, Traceable
-from halfspace.equilibrium.path import Segment, make_point
+from halfspace.equilibrium.path import Segment, solved_point
 from halfspace.equilibrium.search import energy_size, states
 from halfspace.equilibrium.states import measured
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import InputError, NotConverged, Unsolved, required
 from halfspace.limits import require_number
 from halfspace.values import Array, Estimate
 
@@ -280,7 +279,7 @@ def apart(problem: Traceable, off: Located, compliance: float = 0.0) -> Located:
     """State of the separated branch at the base of a jump off, which may be beyond the beginning of the curve."""
     base = _base(off, compliance)
     separated = widened(problem, base)
-    return landing_of(off, separated, separated.undeformed(base), compliance)
+    return required(landing_of(off, separated, separated.undeformed(base), compliance))
 
 
 def _base(state: Located, compliance: float) -> float:
@@ -288,28 +287,29 @@ def _base(state: Located, compliance: float) -> float:
     return float(state.point.observables[APPROACH] + compliance * state.point.observables[LOAD])
 
 
-def landing_of(take_off: Located, problem: Traceable, start: Array, compliance: float = 0.0) -> Located:
+def landing_of(take_off: Located, problem: Traceable, start: Array, compliance: float = 0.0) -> Located | Unsolved:
     """State on a discretisation at the base of a take-off."""
     base, weights = _base(take_off, compliance), np.array([1.0, compliance, 0.0, 0.0])
-    solution = newton.solve(problem, start, Control(weights, base))
-    point = make_point(problem, solution, metric_for(problem), weights, 0.0)
-    return Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
+    point = solved_point(problem, start, Control(weights, base), metric_for(problem), weights)
+    return point and Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
 
 
-def _refined(states: JumpStates, stage: Stage, compliance: float) -> JumpStates:
+def _refined(states: JumpStates, stage: Stage, compliance: float) -> JumpStates | Unsolved:
     """Both states of a jump on another discretisation."""
 
-    def leave(state: Located, problem: Traceable) -> Located:
+    def leave(state: Located, problem: Traceable) -> Located | Unsolved:
         wide = _wide_enough(state, problem)
         there = next((known for known in states.known if known.problem is wide), None)
         return there or stage.moved(state, wide)
 
-    def land(state: Located, problem: Traceable) -> Located:
+    def land(state: Located, problem: Traceable) -> Located | Unsolved:
         wide = _wide_enough(state, problem)
-        return landing_of(fold, wide, transfer(state.problem, state.point.x, wide), compliance)
+        return landing_of(states.take_off, wide, transfer(state.problem, state.point.x, wide), compliance)
 
     fold = settled(states.take_off, stage, leave)
-    return JumpStates(fold, settled(states.landing, stage, land), states.on, states.known)
+    states = replace(states, take_off=fold) if fold else states
+    landing = fold and settled(states.landing, stage, land)
+    return landing and replace(states, landing=landing)
 
 
 def _wide_enough(state: Located, problem: Traceable) -> Traceable:
@@ -319,10 +319,10 @@ def _wide_enough(state: Located, problem: Traceable) -> Traceable:
 def _staged(rough: JumpStates, path: EquilibriumPath, compliance: float) -> StagedJump:
     """Jump on the finest discretisation of the path's ladder, and on the others."""
 
-    def again(stage: Stage, states: JumpStates) -> JumpStates:
+    def again(stage: Stage, states: JumpStates) -> JumpStates | Unsolved:
         return _refined(states, stage, compliance)
 
-    chain, *twin = path.ladder.chains(again(path.finest, rough), again)
+    chain, *twin = required(path.ladder.chains(required(again(path.finest, rough)), again))
     return StagedJump(chain[-1], (*chain[:-1], *(pair[0] for pair in twin)))
 
 
@@ -382,5 +382,7 @@ def _far_segment(first: Segment, jump: float) -> Segment:
     far, near = 1 - FARTHER * jump, 1 - float(first.points[0].observables[APPROACH]) / NEARER
     problem = widened(first.problem, 1 - far)
     metric = metric_for(problem)
-    points = [separated(problem, approach, metric) for approach in (1 - np.geomspace(far, near, POINTS)).tolist()]
+    points = [
+        required(separated(problem, approach, metric)) for approach in (1 - np.geomspace(far, near, POINTS)).tolist()
+    ]
     return measured(problem, points, metric)

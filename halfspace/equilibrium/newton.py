@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, final
 
 import numpy as np
 
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem, Solver
-from halfspace.errors import NotConverged
+from halfspace.errors import Unsolved, required
 from halfspace.values import Array, Valued, appended
 
 
@@ -56,7 +56,7 @@ class Equilibrium(Protocol):
         ...
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
-        """Solver for the linearised equations with the control row below them; raise NotConverged if singular."""
+        """Solver for the linearised equations with the control row below them; all nan if these are singular."""
         ...
 
     def observables(self, x: Array) -> Array:
@@ -172,6 +172,7 @@ def _single(observable: int, value: float) -> Control:
     return Control(np.eye(4)[observable], float(value))
 
 
+@final
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution(Valued):
     """A converged state x, its observables (4,), approach, load, central gap and contact radius, and its control.
@@ -191,6 +192,13 @@ class Solution(Valued):
 
 
 def solve(
+    problem: Equilibrium, start: Array, control: Control, *, tolerance: float = 1e-8, max_iterations: int = 40
+) -> Solution:
+    """Solve the equilibrium under a control as of `attempt`, or raise NotConverged."""
+    return required(attempt(problem, start, control, tolerance=tolerance, max_iterations=max_iterations))
+
+
+def attempt(
     problem: Equilibrium,
     start: Array,
     control: Control,
@@ -198,18 +206,17 @@ def solve(
     tolerance: float = 1e-8,
     max_iterations: int = 40,
     contraction: float = math.inf,
-) -> Solution:
-    """Solve the equilibrium under a control, from a start whose gaps are positive.
+) -> Solution | Unsolved:
+    """Solve the equilibrium under a control, from a start whose gaps are positive, or say why Newton's method fails.
 
     Whether the grid can carry the state found is another question: ask ``problem.require_resolution``. A state is
-    accepted if the last step's relative size is within the tolerance; convergence is quadratic. NotConverged if the
-    steps or the damping run out, or a step is longer than the part `contraction` of that two before, at first of 1; no
-    unconverged state is ever returned.
+    accepted if the last step's relative size is within the tolerance; convergence is quadratic. Unsolved if the steps
+    or the damping run out, or a step is longer than the part `contraction` of that two before, at first of 1.
     """
     x = start.copy()
     F = _equations(problem, x, control)
     if np.isnan(F[-1]):
-        raise NotConverged("the start has no contact radius to be prescribed; start from a state in contact")
+        return Unsolved("the start has no contact radius to be prescribed; start from a state in contact")
     before = last = 1.0 if contraction < 1 else math.inf
     solver: Solver | None = None
     astray = 0.0
@@ -219,6 +226,8 @@ def solve(
         accuracy = NEWTON.left if problem.reuse else min(max(before**2, NEWTON.left), NEWTON.rough)
         dx = -solver(F, accuracy)
         update = problem.size(x, dx)
+        if not math.isfinite(update):
+            break
         astray = astray or update
         x, F, damping = _damped(problem, x, F, dx, control)
         left = update * min(1.0, max(update, accuracy) if fresh else update / before)
@@ -226,10 +235,10 @@ def solve(
             return Solution(x, problem.observables(x), iteration, update, control, solver, astray)
         if damping < 1 or update > problem.reuse or (not fresh and update > NEWTON.slow * before):
             solver = None
-        if update > contraction * last:
+        if not damping or update > contraction * last:
             break
         last, before = before, update
-    raise NotConverged(
+    return Unsolved(
         f"no convergence in {iteration} Newton steps (last relative step {update:.1e}, limit {tolerance:.0e}, "
         f"relative residual {_misfit(problem, x, F):.1e}); try a nearer start, a smaller change or another control"
     )
@@ -255,6 +264,7 @@ def tangent(problem: Equilibrium, solution: Solution) -> Array:
     return problem.bordered_solver(solution.x, row)(unit)
 
 
+@final
 @dataclass(frozen=True, eq=False, repr=False)
 class Turn(Valued):
     """A state at which a weighted sum of observables turns along the path, and how fast its rate changes there."""
@@ -263,13 +273,15 @@ class Turn(Valued):
     slope: float
 
 
-def turning_point(problem: Equilibrium, start: Array, weights: Array, direction: Array, reach: float) -> Turn:
+def turning_point(
+    problem: Equilibrium, start: Array, weights: Array, direction: Array, reach: float
+) -> Turn | Unsolved:
     """Solve for the state near a start at which a weighted sum of the observables is stationary along the path.
 
     Newton's method on the equilibrium and the sum's rate psi = c t, c the sum's gradient, t the tangent of the path.
     The weights (4,) are of the observables in the sum, the direction (4,) is the arclength's gradient at a point
-    nearby, and the reach the arclength by which a step may move along the path. NotConverged if there is no such state
-    so near.
+    nearby, and the reach the arclength by which a step may move along the path. Unsolved if there is no such state so
+    near.
     """
     x = start
     for iteration in range(1, NEWTON.turns + 1):
@@ -282,12 +294,15 @@ def turning_point(problem: Equilibrium, start: Array, weights: Array, direction:
             if not abs(step) <= reach:
                 break
             dx = dx + step * here.tangent + step**2 / 2 * bend
-        update, damping = problem.size(x, dx), problem.longest_step(x, dx)
+        update = problem.size(x, dx)
+        if not math.isfinite(update):
+            break
+        damping = problem.longest_step(x, dx)
         x = x + damping * dx
         if near and damping == 1 and update < NEWTON.turned:
             control = Control(direction, 0.0)
             return Turn(Solution(x, problem.observables(x), iteration, update, control, here.solver), slope)
-    raise NotConverged("the path does not turn here; take a smaller rtol")
+    return Unsolved("the path does not turn here; take a smaller rtol")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -337,7 +352,7 @@ def _last(size: int) -> Array:
 
 
 def _damped(problem: Equilibrium, x: Array, F: Array, dx: Array, control: Control) -> tuple[Array, Array, float]:
-    """Take the longest of the steps f dx, f/2 dx ... that keeps gaps positive and the residual in bounds.
+    """Take the longest of the steps f dx, f/2 dx ... that keeps gaps positive and the residual in bounds, 0 if none.
 
     Where the surfaces repel, the law is steep and convex: a step that overshoots raises the residual once and then
     converges from one side. A line search that insists on descent would crawl there, so some growth is let through.
@@ -346,13 +361,11 @@ def _damped(problem: Equilibrium, x: Array, F: Array, dx: Array, control: Contro
     damping = problem.longest_step(x, dx)
     while damping > 1e-4:
         trial = x + damping * dx
-        F = _equations(problem, trial, control)
-        if _misfit(problem, x, F) <= NEWTON.growth * merit or problem.size(x, dx) < NEWTON.round_off:
-            return trial, F, damping
+        changed = _equations(problem, trial, control)
+        if _misfit(problem, x, changed) <= NEWTON.growth * merit or problem.size(x, dx) < NEWTON.round_off:
+            return trial, changed, damping
         damping /= 2
-    raise NotConverged(
-        f"the damping ran out (relative residual {merit:.1e}); try a nearer start, a smaller change or another control"
-    )
+    return x, F, 0.0
 
 
 def _equations(problem: Equilibrium, x: Array, control: Control) -> Array:

@@ -7,18 +7,17 @@ numbers that every discretisation has, so its value does not depend on the grid,
 from __future__ import annotations
 
 import math
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, final
 
 import numpy as np
 
-from halfspace.elastic.grid import polynomial
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LARGEST, LOAD, ContactProblem
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
-from halfspace.errors import ContactTooWide, GridTooCoarse, IllPosed, NotConverged
+from halfspace.errors import ContactTooWide, GridTooCoarse, IllPosed, Unsolved
 from halfspace.values import Array, Valued
 
 
@@ -26,7 +25,6 @@ from halfspace.values import Array, Valued
 class PathSettings:
     """Numbers by which steps along the path are begun, refused and made longer."""
 
-    nudge: float = 1e-3  # of arclength: a step too short for the contact edge to leave its place
     unfelt: float = 1e-8  # eps or R dgamma in the arclength 1: so far apart that an exponential law is all but nothing
     nearly: float = 0.2  # of the larger of two slopes: one that nearly vanishes
     faint: float = 0.1  # slope in the metric's units, of which the observable is but a tenth of the path
@@ -35,7 +33,6 @@ class PathSettings:
     short: float = 0.1  # a step below which the cubic errs by far less than that
     straight: float = 1e-10  # of the slopes: a bend that is rounding
     ratio: float = 4.0  # of a gap to the step by which it closes at most, where that is longer than the longest
-    known: int = 3  # states through which the next is extrapolated
 
 
 PATH = PathSettings()
@@ -63,6 +60,7 @@ class Metric:
         return float(self.weights @ (a.rates * b.rates))
 
 
+@final
 @dataclass(frozen=True, eq=False, repr=False)
 class Point(Valued):
     """A converged point x of the path, its observables, unit tangent dx/ds and arclength s from the start of the path.
@@ -142,24 +140,45 @@ def make_point(
     return Point(solution.x, solution.observables, along, rates, arclength, solution.iterations, solution.astray)
 
 
-def correct(
+def solved_point(
     problem: Equilibrium,
+    start: Array,
+    control: Control,
+    metric: Metric,
+    direction: Array,
+    arclength: float = 0.0,
+    **how: Any,
+) -> Point | Unsolved:
+    """Solve for a point under a control, as of `newton.attempt`, and attach its tangent, as of `make_point`."""
+    solution = newton.attempt(problem, start, control, **how)
+    return solution and make_point(problem, solution, metric, direction, arclength)
+
+
+def correct(
+    problem: Traceable,
     point: Point,
     step: float,
-    guess: Array,
     metric: Metric,
-    iterations: int = 8,
+    guess: Array | None = None,
+    *,
+    iterations: int = 20,
     contraction: float = np.inf,
-) -> Point:
+) -> Point | Unsolved:
     """Solve for the point of the path at the arclength `step` past `point`, measured along its tangent.
 
-    NotConverged if Newton's method does not reach it from `guess`.
+    Newton's method starts from the guess, or else on the tangent.
     """
+    start = predict(problem, point, step) if guess is None else guess
+    across, weights = plane_across(point, metric, step)
+    how = {"max_iterations": iterations, "contraction": contraction}
+    return solved_point(problem, start, across, metric, weights, point.arclength + step, **how)
+
+
+def plane_across(point: Point, metric: Metric, step: float = 0.0) -> tuple[Control, Array]:
+    """Control of the plane across the path at a point, or a step past it, and its weights (4,) of the observables."""
     weights = metric.weights * point.rates
     used = weights != 0
-    control = Control(weights, float(weights[used] @ point.observables[used]) + step)
-    solution = newton.solve(problem, guess, control, max_iterations=iterations, contraction=contraction)
-    return make_point(problem, solution, metric, weights, point.arclength + step)
+    return Control(weights, float(weights[used] @ point.observables[used]) + step), weights
 
 
 def predict(problem: Traceable, point: Point, step: float, bend: Array | float = 0.0) -> Array:
@@ -179,22 +198,6 @@ def _bend(before: Point, point: Point, step: float, metric: Metric) -> Array:
     return np.asarray(ahead * (first + 2 * last - 3 * mean + ahead * (first + last - 2 * mean)))
 
 
-def _starts(
-    problem: Traceable, points: list[Point], step: float, metric: Metric, trail: Sequence[Passed]
-) -> Iterator[Array]:
-    """Predictions in the order in which they are tried.
-
-    Where a body's grid stands still see `with_edge` first, which is worse, however, where the surface is steep. The
-    trail is of the states passed, on whatever grid, down to that of the last point.
-    """
-    point = points[-1]
-    if problem.interface is not problem and step > PATH.nudge:
-        moved = with_edge(problem, trail, point.x, point.arclength + step)
-        if moved is not None:
-            yield moved
-    yield predict(problem, point, step, _bend(points[-2], point, step, metric) if len(points) > 1 else 0.0)
-
-
 def follow(
     problem: Traceable,
     start: Point,
@@ -202,29 +205,26 @@ def follow(
     stop: Callable[[Point], bool],
     *,
     steps: Steps | None = None,
-    trail: Sequence[Passed] = (),
     max_points: int = 2000,
-) -> list[Point]:
+) -> list[Point] | Unsolved:
     """Continue the path from a point to the first for which `stop` holds, in steps adapted to its curvature.
 
-    The tangent of the start, which is the first of the points, says in which direction; the trail is of states passed
-    before, on whatever grid. NotConverged if the step falls below the shortest allowed, or the points run out;
-    GridTooCoarse if the contact edge comes to a place where the grid is too coarse for the spike of tension there.
+    The tangent of the start, which is the first of the points, says in which direction. Unsolved if the step falls
+    below the shortest allowed, or the points run out; GridTooCoarse if the contact edge comes to a place where the grid
+    is too coarse for the spike of tension there.
     """
     steps = steps or (Steps() if problem.interface is problem else WHOLE_BODY)
-    points, trail = [start], deque([*trail, passed(problem, start.x, start.arclength)], PATH.known)
-    step = steps.first
+    points, step = [start], steps.first
     while len(points) < max_points:
-        try:
-            new = _advance(problem, points, step, metric, steps, trail)
-        except NotConverged as error:
+        new = _advance(problem, points, step, metric, steps)
+        if not new:
             step /= 3
             if step < steps.shortest:
                 at = points[-1].observables
-                raise NotConverged(
+                return Unsolved(
                     f"the path ends at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma: no step of "
-                    f"{steps.shortest:.0e} or more converges ({error}); take a smaller rtol, or a finer mesh"
-                ) from error
+                    f"{steps.shortest:.0e} or more converges ({new.reason}); take a smaller rtol, or a finer mesh"
+                )
             continue
         ended = stop(new)
         if ended and step > steps.shortest and not _carried(problem, new):
@@ -232,11 +232,10 @@ def follow(
             continue
         problem.require_resolution(new.x)
         points.append(new)
-        trail.append(passed(problem, new.x, new.arclength))
         if ended:
             return points
         step = _next_step(step, points, metric, steps)
-    raise NotConverged(f"the path did not end within {max_points} points; allow more points or longer steps")
+    return Unsolved(f"the path did not end within {max_points} points; allow more points or longer steps")
 
 
 def _carried(problem: Equilibrium, point: Point) -> bool:
@@ -249,32 +248,20 @@ def _carried(problem: Equilibrium, point: Point) -> bool:
 
 
 def _advance(
-    problem: Traceable, points: list[Point], step: float, metric: Metric, steps: Steps, trail: Sequence[Passed]
-) -> Point:
+    problem: Traceable, points: Sequence[Point], step: float, metric: Metric, steps: Steps
+) -> Point | Unsolved:
     """One step, refused if it leaves what the operator knows, or if the path turns too far for its folds to be seen."""
     point = points[-1]
-    new = _corrected(problem, point, step, _starts(problem, points, step, metric, trail), metric, steps)
-    least, radius = problem.interface.operator.least_radius, new.observables[CONTACT_RADIUS]
-    if radius < least:
-        raise NotConverged(f"contact radius {radius:.3g} beta is below {least:.3g} beta, the chart's least")
+    guess = predict(problem, point, step, _bend(points[-2], point, step, metric) if len(points) > 1 else 0.0)
+    new = correct(problem, point, step, metric, guess, iterations=steps.iterations, contraction=steps.contraction)
+    least = problem.interface.operator.least_radius
+    if not new or new.observables[CONTACT_RADIUS] < least:
+        return new and Unsolved(f"the contact radius is below {least:.3g} beta, the chart's least")
     if _turn(point, new, metric) > 2 * steps.turn:
-        raise NotConverged("the path turns too sharply")
+        return Unsolved("the path turns too sharply")
     if any(_hides_turning_points(point, new, k, metric) for k in (APPROACH, LOAD)):
-        raise NotConverged("the step may leap over a pair of folds")
+        return Unsolved("the step may leap over a pair of folds")
     return new
-
-
-def _corrected(
-    problem: Traceable, point: Point, step: float, starts: Iterable[Array], metric: Metric, steps: Steps
-) -> Point:
-    """Point a step further, from the first of the starts from which it is found."""
-    failures: list[NotConverged] = []
-    for start in starts:
-        try:
-            return correct(problem, point, step, start, metric, steps.iterations, steps.contraction)
-        except NotConverged as error:
-            failures.append(error)
-    raise failures[-1]
 
 
 def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
@@ -340,51 +327,3 @@ def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -
 def loaded_to(load: float) -> Callable[[Point], bool]:
     """Stop where the contact bears a load in R dgamma, a compressive one: there is but one place."""
     return lambda point: bool(point.observables[LOAD] >= load)
-
-
-# The next state where the contact edge runs over a grid that stands still, and with it the spike of tension. At a fixed
-# place gaps bend as sharply as the spike is narrow; seen from the edge they change as smoothly as the radius of the
-# contact. So they are extrapolated there, through the last states, and the body is asked for what lies below.
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Passed(Valued):
-    """A state that the path has passed, as its `interface` knows it: (q + 2,), at an arclength."""
-
-    interface: ContactProblem
-    state: Array
-    arclength: float
-
-    @cached_property
-    def radius(self) -> float:
-        """Contact radius on the undeformed body, in beta; nan without contact."""
-        return self.interface.contact_radius(self.state)
-
-    def seen(self, radii: Array, radius: float) -> Array:
-        """Gaps where these radii are, were the contact of another radius, and its approach, (n + 1,)."""
-        body = self.interface.operator_at(self.state)
-        own = np.interp(radii, (0.0, radius, body.extent), (0.0, self.radius, body.extent))
-        return np.append(body.values_at(own, self.state[:-2]), self.state[-2])
-
-
-def passed(problem: Traceable, x: Array, arclength: float) -> Passed:
-    """A state of a problem, as passed."""
-    return Passed(problem.interface, problem.surface_state(x), arclength)
-
-
-def with_edge(problem: Traceable, trail: Sequence[Passed], near: Array, arclength: float) -> Array | None:
-    """State at an arclength beyond the last of those passed, near that; None unless two have a contact."""
-    known = [state for state in trail if state.radius > 0][-PATH.known :]  # nor nan
-    if len(known) < 2 or not trail[-1].radius > 0:
-        return None
-    weights = polynomial(np.array([state.arclength for state in known]), arclength)
-    radius = float(weights @ [state.radius for state in known])
-    surface = problem.interface
-    body = surface.operator_at(problem.surface_state(near))
-    if not 0 < radius < body.extent:
-        return None
-    radii = body.radii
-    views = np.array([state.seen(radii, radius) for state in known])
-    ahead, last_gaps = weights @ views, views[-1, :-1]
-    gaps = np.maximum(ahead[:-1], last_gaps - LARGEST * surface.law.room(last_gaps))
-    return problem.state_from_surface(np.append(gaps, [ahead[-1], 1.0]), near)

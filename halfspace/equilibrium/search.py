@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 from typing import NoReturn
@@ -21,16 +20,16 @@ from halfspace.equilibrium.conditions import (
     between,
     brackets,
     compliance,
-    hermite,
     locate,
+    part_way,
     seen_from,
     steepest_from,
     wound,
 )
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST
 from halfspace.equilibrium.newton import Traceable
-from halfspace.equilibrium.path import Metric, Point, Segment, correct, predict
-from halfspace.errors import ContactTooWide, NotConverged
+from halfspace.equilibrium.path import Metric, Point, Segment, correct
+from halfspace.errors import ContactTooWide, NotConverged, Unsolved, required
 from halfspace.scales import BRADLEY
 
 Bracket = tuple[Traceable, Point, Point]
@@ -59,7 +58,7 @@ def states(segments: Sequence[Segment], condition: Condition, known: Iterable[Lo
 def states_in(segments: Sequence[Segment], condition: Condition, known: Iterable[Located] = ()) -> list[list[Located]]:
     """Those of each segment."""
     return [
-        [state for bracket in found for state in _within(bracket, known) or with_care(bracket, condition)]
+        [state for bracket in found for state in _within(bracket, known) or required(with_care(bracket, condition))]
         for found in _brackets_in(segments, condition)
     ]
 
@@ -89,16 +88,15 @@ def _to_hand_over(segment: Segment, after: Segment | None, condition: Condition,
     if after is None or (condition.of(last) < 0) == (condition.of(after.points[0]) < 0):
         return segment.points
     for step in np.geomspace(*FIND.behind, 8):
-        with suppress(NotConverged):
-            point = correct(problem, last, step, predict(problem, last, step), metric, iterations=20)
-            if (condition.of(point) < 0) != (condition.of(last) < 0):
-                return (*segment.points, point)
+        point = correct(problem, last, step, metric)
+        if point and (condition.of(point) < 0) != (condition.of(last) < 0):
+            return (*segment.points, point)
     return segment.points
 
 
 def _state(bracket: Bracket, condition: Condition) -> Located:
     problem, a, b = bracket
-    return between(problem, a, b, condition, metric_for(problem))
+    return required(between(problem, a, b, condition, metric_for(problem)))
 
 
 def _deepest(brackets: Sequence[Bracket]) -> Located:
@@ -153,14 +151,15 @@ def _require_touching(segments: Sequence[Segment]) -> None:
         )
 
 
-def with_care(bracket: Bracket, condition: Condition) -> list[Located]:
+def with_care(bracket: Bracket, condition: Condition) -> list[Located] | Unsolved:
     """State between two points, or those that shorter steps between them find where its own search does not end."""
     problem, a, b = bracket
     metric = metric_for(problem)
-    try:
-        return [between(problem, a, b, condition, metric)]
-    except NotConverged:
-        return locate(problem, wound(problem, a, b, metric), metric, condition)
+    found = between(problem, a, b, condition, metric)
+    if found:
+        return [found]
+    points = wound(problem, a, b, metric)
+    return locate(problem, points, metric, condition) if isinstance(points, list) else points
 
 
 Chains = Sequence[Sequence[Located]]
@@ -175,16 +174,14 @@ def turns(segments: Sequence[Segment], condition: Condition, inner: slice = slic
     """Where an observable turns along the curve as it was traced, in order."""
     found: list[Turn] = []
     for bracket in brackets_of(segments, condition)[inner]:
-        try:
-            found += [(turn.point, turn) for turn in with_care(bracket, condition)]
-        except NotConverged:
-            found.append((bracket[1], None))
+        states = with_care(bracket, condition)
+        found += [(turn.point, turn) for turn in states] if states else [(bracket[1], None)]
     return found
 
 
 def confirmed(
     traced: Sequence[Turn],
-    solve: Callable[[Located], Chains],
+    solve: Callable[[Located], Chains | Unsolved],
     known: Sequence[Located] = (),
 ) -> tuple[list[Chains], list[Point]]:
     """Turns of a curve that every discretisation has, on each of these, and about where the rest are.
@@ -204,7 +201,7 @@ def confirmed(
     for point, chains in found:
         fine = chains[0][-1] if chains else None
         others = (*known, *(one[0][-1] for one in kept))
-        if fine and fine.slope * before > 0 and not any(_same_turn(fine, other) for other in others):
+        if chains and fine and fine.slope * before > 0 and not any(_same_turn(fine, other) for other in others):
             kept.append(chains)
             before = -before
         else:
@@ -269,10 +266,9 @@ def folds_in_doubt(segments: Sequence[Segment]) -> dict[str, Located]:
         least, part, problem, a, b = fall
         if abs(least) >= in_doubt:
             return {}
-        step = part * (b.arclength - a.arclength)
-        point = correct(problem, a, step, hermite(problem, a, b, part, metric), metric, iterations=20) if step else a
+        point = required(part_way(problem, a, b, part, metric)) if part else a
         if abs(STEEPEST.of(point) - least) < FIND.astray * in_doubt:
-            return {"steepest": steepest_from(problem, point, metric)}
+            return {"steepest": required(steepest_from(problem, point, metric))}
         falls.remove(fall)  # the curve does not fall as steeply there as the cubics have it
         pairs = (a, point), (point, seen_from(point, b, metric))
         falls += [(*_least_compliance(c, d), problem, c, d) for c, d in pairs]

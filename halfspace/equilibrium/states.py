@@ -27,7 +27,7 @@ from halfspace.equilibrium.conditions import (
     Condition,
     Located,
     between,
-    hermite,
+    part_way,
     rounding,
     same_place,
     seen_from,
@@ -35,9 +35,9 @@ from halfspace.equilibrium.conditions import (
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.events import ErrorRule, errors_of
 from halfspace.equilibrium.newton import Traceable
-from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
+from halfspace.equilibrium.path import Metric, Point, Segment, solved_point
 from halfspace.equilibrium.search import Chains, confirmed, turns
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import InputError, NotConverged, Unsolved, required
 from halfspace.values import Array, Valued
 
 T = TypeVar("T")
@@ -73,22 +73,18 @@ class Ladder(Valued):
         """Whether there is anything to compare with."""
         return len(self.chain) > 1
 
-    def chains(self, fine: T, again: Callable[[Stage, T], T]) -> list[list[T]]:
-        """Chains to a state of the finest discretisation, where `again` solves for it on another one.
-
-        NotConverged if one has no such state.
-        """
-        chain = [*(again(stage, fine) for stage in self.chain[:-1]), fine]
-        return [chain, [again(self.twin, fine), fine]] if self.twin else [chain]
-
-
-def in_plane(stage: Stage, state: Located) -> Located:
-    """Solve for a state again on a discretisation, in the plane across the path there."""
-    problem, point = placed(stage, state.problem, state.point)
-    return replace(state, problem=problem, point=point)
+    def chains(self, fine: T, again: Callable[[Stage, T], T | Unsolved]) -> list[list[T]] | Unsolved:
+        """Chains to a state of the finest discretisation, where `again` solves for it on another one."""
+        chain, twin = list[T](), list[T]()
+        for stage in (*self.chain[:-1], self.twin):
+            there = again(stage, fine) if stage else fine
+            if isinstance(there, Unsolved):
+                return there
+            (twin if stage is self.twin else chain).append(there)
+        return [[*chain, fine], [*twin, fine]] if self.twin else [[*chain, fine]]
 
 
-def met_again(stage: Stage, state: Located) -> Located:
+def met_again(stage: Stage, state: Located) -> Located | Unsolved:
     """Solve for a state that meets a condition again on a discretisation."""
     return state if stage(state).problem is state.problem else settled(state, stage, stage.moved)
 
@@ -206,12 +202,10 @@ class FinestCurve(Valued):
             return [turn for _, turn in turns(self.traced, condition) if turn]
         return [chains[0][-1] for chains in confirmed(turns(self.traced, condition), self._again)[0]]
 
-    def _again(self, turn: Located) -> Chains:
+    def _again(self, turn: Located) -> Chains | Unsolved:
         ladder = self.ladder.along
-        try:
-            return ladder.chains(met_again(ladder.finest, turn), met_again)
-        except NotConverged:
-            return []
+        fine = met_again(ladder.finest, turn)
+        return fine and ladder.chains(fine, met_again)
 
     def _cut(self, k: int) -> Mapping[str, Sequence[Segment]]:
         """Cut the curve where an observable turns, between the points from which the way over the turn is shortest."""
@@ -263,28 +257,25 @@ class FinestCurve(Valued):
         nearest = [(part, min(part.points, key=lambda p: abs(condition.of(p)))) for part in parts]
         nearest.sort(key=lambda one: (self._is_left_behind(one[0].problem), abs(condition.of(one[1]))))
         gaps = [self.metric.distance(a.points[-1], b.points[0]) for a, b in pairwise(parts)]
-        reach, (*others, (part, near)) = max([LOCATE.nearby, *gaps]), nearest
-        for other, point in others:
-            try:
-                return other.problem, self._beside(other.problem, point, condition, reach), 0.0
-            except NotConverged:
-                continue
-        return part.problem, self._beside(part.problem, near, condition, reach), 0.0
+        reach = max([LOCATE.nearby, *gaps])
+        for part, near in nearest:
+            found = self._beside(part.problem, near, condition, reach)
+            if found:
+                return part.problem, found, 0.0
+        raise NotConverged(f"no state at {value:.6g} is found between two grids; take a smaller rtol")
 
-    def _beside(self, problem: Traceable, near: Point, condition: Condition, reach: float) -> Point:
+    def _beside(self, problem: Traceable, near: Point, condition: Condition, reach: float) -> Point | None:
         """State that meets a condition in reach of a point: Newton's method may lead to another branch, farther off."""
-        solution = newton.solve(problem, near.x, newton.Control(condition.weights, condition.value))
+        control = newton.Control(condition.weights, condition.value)
         s = near.arclength + abs(condition.of(near))
-        point = make_point(problem, solution, self.metric, self.metric.weights * near.rates, s)
-        if self.metric.distance(point, near) > reach:
-            raise NotConverged(f"no state at {condition.value:.6g} is found between two grids; take a smaller rtol")
-        return point
+        point = solved_point(problem, near.x, control, self.metric, self.metric.weights * near.rates, s)
+        return point if point and self.metric.distance(point, near) <= reach else None
 
     def _met(self, problem: Traceable, a: Point, b: Point, condition: Condition) -> tuple[Point, float]:
         """State between two points that meets a condition, and the observable's second derivative there."""
         k = condition.observable
         bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
-        return between(problem, a, b, condition, self.metric).point, bend
+        return required(between(problem, a, b, condition, self.metric)).point, bend
 
     def _bridges(self, before: Segment, after: Segment) -> Iterator[tuple[Traceable, Point, Point]]:
         """Last point on one discretisation and first on the next, both on either of these that has them."""
@@ -295,14 +286,11 @@ class FinestCurve(Valued):
         ):
             if problem.interface.follows_contact and np.isnan(point.observables[CONTACT_RADIUS]):
                 continue
-            start = transfer(other, point.x, problem)
-            try:
-                there = same_place(point, problem, start, self.metric)
-            except NotConverged:
-                continue
-            a, b = (last, there) if point is first else (there, first)
-            if (b := seen_from(a, b, self.metric)).arclength > a.arclength:
-                yield problem, a, b
+            there = same_place(point, problem, transfer(other, point.x, problem), self.metric)
+            if there:
+                a, b = (last, there) if point is first else (there, first)
+                if (b := seen_from(a, b, self.metric)).arclength > a.arclength:
+                    yield problem, a, b
 
     def _is_left_behind(self, problem: Traceable) -> bool:
         return any(problem is one for one in self.left_behind)
@@ -334,11 +322,9 @@ class FinestCurve(Valued):
         ladder = self.ladder.along
         if not ladder.told:
             return np.full(4, np.nan)
-        if self._is_left_behind(problem):
-            return _unbounded(point)
-        try:
-            chains = ladder.chains(Located(PLANE, problem, point, 1.0), in_plane)
-        except NotConverged:
+        here = Located(PLANE, problem, point, 1.0)
+        chains = not self._is_left_behind(problem) and ladder.chains(here, placed)
+        if not chains:
             return _unbounded(point)
         errors = errors_of(chains, ladder.rule)
         if (
@@ -410,10 +396,9 @@ def finest_curve(
         return FinestCurve(traced, traced, ladder, metric, folds)
     found, left_behind = list[tuple[Traceable, Point]](), dict[int, Traceable]()
     for problem, point in ((segment.problem, point) for segment in segments for point in segment.points):
-        try:
-            found.append(placed(ladder.along.finest, problem, point))
-        except NotConverged:
-            found.append((problem, point))
+        there = placed(ladder.along.finest, Located(PLANE, problem, point, 1.0))
+        found.append((there.problem, there.point) if there else (problem, point))
+        if not there:
             left_behind[id(problem)] = problem
     return FinestCurve(measured_runs(found, metric), traced, ladder, metric, folds, tuple(left_behind.values()))
 
@@ -447,6 +432,4 @@ def _spread(segment: Segment, places: Array, metric: Metric) -> Iterator[Point]:
     for place in places:
         i = int(np.clip(np.searchsorted(s, place) - 1, 0, s.size - 2))
         a, b = points[i], points[i + 1]
-        step = float(place - a.arclength)
-        guess = hermite(problem, a, b, step / (b.arclength - a.arclength), metric)
-        yield correct(problem, a, step, guess, metric, iterations=20)
+        yield required(part_way(problem, a, b, (place - a.arclength) / (b.arclength - a.arclength), metric))

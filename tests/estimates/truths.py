@@ -21,7 +21,7 @@ from halfspace.elastic import compliance
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.equilibrium.charts import moved, placed, trace_charts
-from halfspace.equilibrium.conditions import FOLD
+from halfspace.equilibrium.conditions import FOLD, Located
 from halfspace.equilibrium.events import is_event, numbered
 from halfspace.equilibrium.search import brackets_of, energy_released, find_events, with_care
 from halfspace.laws import LENNARD_JONES
@@ -161,6 +161,6 @@ def of_state(state):
 
 def points_on(stage, path, places):
     """Points of a curve at some places, solved for on a stage in the plane across the path."""
-    points = [(part.problem, point) for part in path.finest_curve.segments for point in part.points]
-    found = {k: placed(stage, *points[k])[1].observables for k in places}
+    points = [Located(FOLD, part.problem, point, 1.0) for part in path.finest_curve.segments for point in part.points]
+    found = {k: placed(stage, points[k]).point.observables for k in places}
     return {f"point {k} {q}": float(v) for k, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}

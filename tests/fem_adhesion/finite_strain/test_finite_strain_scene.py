@@ -36,9 +36,10 @@ from fem_adhesion.finite_strain.traction import Convention
 from halfspace.accuracy.standing import Standing
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Chart, moved, placed, transfer, undeformed_radius
+from halfspace.equilibrium.conditions import FOLD, Located
 from halfspace.equilibrium.contact import APPROACH
 from halfspace.equilibrium.search import energy_released
-from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
+from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged, Unsolved
 from halfspace.laws import Dlvo, Dugdale
 from halfspace.profiles import Hyperboloid
 
@@ -81,7 +82,7 @@ def test_errors_of_points_hold_a_solution_of_higher_degree(path):
     assert max(numbers[1] / (1 + np.abs(path.load))) < 1e-3
     points = [(part.problem, point) for part in path.finest_curve.segments for point in part.points]
     for k in range(3, path.count, 10):
-        truth = placed(finest, *points[k])[1].observables
+        truth = placed(finest, Located(FOLD, *points[k], 1.0)).point.observables
         for number, errors, value in zip(points[k][1].observables, numbers, truth, strict=True):
             assert np.isnan(value) or abs(value - number) <= errors[k]
 
@@ -472,9 +473,6 @@ def test_events_of_a_tiny_sphere_hold_on_graded_cells(monkeypatch):
 def test_an_event_that_is_lost_says_where(path, monkeypatch):
     found = path.stages[0]["pull_off"]
 
-    def lost(*_):
-        raise NotConverged("because")
-
-    monkeypatch.setattr(finite_strain_scene, "relocate", lost)
-    with pytest.raises(NotConverged, match=r"is lost at beta/R = 0\.00\d+ \(because\); take a larger radius_ratio"):
-        raised(found, found.problem)
+    monkeypatch.setattr(finite_strain_scene, "relocate", lambda *_: Unsolved("because"))
+    lost = raised(found, found.problem)
+    assert re.search(r"is lost at beta/R = 0\.00\d+ \(because\); take a larger radius_ratio", lost.reason)

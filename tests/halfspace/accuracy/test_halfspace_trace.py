@@ -3,12 +3,14 @@
 import csv
 import subprocess
 import sys
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from references import charted_rung
+from scipy.optimize import brentq
 
 import halfspace
 from fem_adhesion.common.fold_birth import critical_stiffness
@@ -17,7 +19,7 @@ from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.elastic.kernel import RingRules
 from halfspace.equilibrium.charts import metric_for, trace_charts
-from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, brackets, part_way
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.path import Steps
@@ -207,8 +209,10 @@ def test_newton_finds_the_turning_points_of_halving(condition):
     found = 0
     for segment in segments:
         for a, b in brackets(segment.problem, segment.points, metric, condition):
-            fast, sure = (find(segment.problem, a, b, condition, metric) for find in (between, bracketed))
-            np.testing.assert_allclose(fast.point.observables[:3], sure.point.observables[:3], rtol=1e-9, atol=1e-9)
+            fast = between(segment.problem, a, b, condition, metric)
+            along = partial(part_way, segment.problem, a, b, metric=metric)
+            sure = along(brentq(lambda part, along=along: condition.of(along(part)), 1e-9, 1 - 1e-9, xtol=1e-14))
+            np.testing.assert_allclose(fast.point.observables[:3], sure.observables[:3], rtol=1e-9, atol=1e-9)
             assert abs(condition.of(fast.point)) < 1e-10
             found += 1
     assert found >= 6

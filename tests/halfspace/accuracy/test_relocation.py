@@ -12,7 +12,6 @@ from halfspace.equilibrium.charts import settled
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import APPROACH
 from halfspace.equilibrium.path import grows_from_afar
-from halfspace.errors import NotConverged
 from halfspace.scales import Scales
 
 
@@ -68,8 +67,9 @@ def test_an_event_is_settled_on_a_chart_made_for_it(route, order):
 
 def test_an_event_that_always_lies_elsewhere_is_not_found():
     _, solve = solved_on([1, 2, 3, 4, 5, 6, 7])
-    with pytest.raises(NotConverged, match="lies elsewhere on every grid"):
-        settled(SimpleNamespace(problem=None, lies_in=0), Windows(), solve)
+    lost = settled(SimpleNamespace(problem=None, lies_in=0), Windows(), solve)
+    assert not lost
+    assert "lies elsewhere on every grid" in lost.reason
 
 
 def point(arclength, approach):
@@ -78,19 +78,21 @@ def point(arclength, approach):
 
 @pytest.mark.parametrize(("leap", "found"), [(0.0, True), (0.2, False)])
 def test_a_sign_that_changes_where_states_leap_is_no_event(monkeypatch, leap, found):
-    def state(_problem, a, step, *_, **__):
-        at = a.arclength + step - 0.3
-        return point(a.arclength + step, at + leap * np.sign(at))
+    def state(arclength):
+        at = arclength - 0.3125
+        return point(arclength, at + leap * (1 if at > 0 else -1))
 
-    monkeypatch.setattr(conditions, "correct", state)
-    monkeypatch.setattr(conditions, "hermite", lambda *_: None)
-    a, b = (state(None, point(0.0, 0.0), s) for s in (0.0, 1.0))
+    def part_way(_problem, a, b, part, _metric):
+        return state(a.arclength + part * (b.arclength - a.arclength))
+
+    monkeypatch.setattr(conditions, "part_way", part_way)
+    monkeypatch.setattr(conditions, "seen_from", lambda _, b, *__: b)
+    monkeypatch.setattr(conditions, "_by_cubic", lambda *_: None)
+    root = conditions.between(None, state(0.0), state(1.0), Condition(0), None)
     if found:
-        root = conditions.bracketed(None, a, b, Condition(0), None).point
-        assert root.observables[0] == pytest.approx(0.0, abs=1e-9)
+        assert root.point.observables[0] == 0.0
     else:
-        with pytest.raises(NotConverged, match="different branches; take a smaller rtol"):
-            conditions.bracketed(None, a, b, Condition(0), None)
+        assert "different branches; take a smaller rtol" in root.reason
 
 
 def test_a_fold_under_a_step_is_known_as_its_place_is():

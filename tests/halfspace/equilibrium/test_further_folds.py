@@ -27,7 +27,7 @@ from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import is_fold, usual
 from halfspace.equilibrium.path import Steps
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import InputError, NotConverged, Unsolved
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, Morse, PowerLaw
 from halfspace.profiles import Sphere
 from halfspace.scales import Scales
@@ -326,14 +326,12 @@ def test_coarse_elements_name_no_wiggle_a_fold(wound, rtol):
 @pytest.mark.parametrize("lost", [0, 1])
 def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch, lost):
     """Folds come in pairs: with one the other is in doubt as well."""
-    path, ups, chains = halfspace.trace(5.0, rtol=1e-3), iter(range(9)), Rung.chains
+    path, ups, chains_of = halfspace.trace(5.0, rtol=1e-3), iter(range(9)), Rung.chains_of
 
-    def on_finer_grids(rung, state):
-        if next(ups) == lost:
-            raise NotConverged("not found again")
-        return chains(rung, state)
+    def on_finer_grids(rung, event):
+        return Unsolved("not found again") if next(ups) == lost else chains_of(rung, event)
 
-    monkeypatch.setattr(Rung, "chains", on_finer_grids)
+    monkeypatch.setattr(Rung, "chains_of", on_finer_grids)
     assert list(path.events) == ["pull_off", "jump_on", "jump_off", "zero_load"]
     true = halfspace.trace(5.0, rtol=1e-3)
     monkeypatch.undo()

@@ -13,15 +13,14 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Hemisphere, Scene, cli
 from halfspace import Coated
-from halfspace.accuracy.stages import Charted
 from halfspace.equilibrium.charts import metric_for, placed
-from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ZERO_LOAD, Condition
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ZERO_LOAD, Condition, Located
 from halfspace.equilibrium.contact import CENTRAL_GAP
 from halfspace.equilibrium.events import ErrorRule, is_fold
-from halfspace.equilibrium.path import correct, predict
+from halfspace.equilibrium.path import correct
 from halfspace.equilibrium.search import states
-from halfspace.equilibrium.states import COORDINATES, Ladder, shift
-from halfspace.errors import InputError, NotConverged
+from halfspace.equilibrium.states import COORDINATES, shift
+from halfspace.errors import InputError, Unsolved
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, Sphere
 
@@ -135,10 +134,7 @@ def _parted_at(turn, segments):
         first, last = (segment.points[end].arclength for end in (0, -1))
         if segment.problem is turn.problem and first < turn.point.arclength < last:
             metric = metric_for(turn.problem)
-            before, after = (
-                correct(turn.problem, turn.point, step, predict(turn.problem, turn.point, step), metric)
-                for step in (-1e-4, 1e-4)
-            )
+            before, after = (correct(turn.problem, turn.point, step, metric) for step in (-1e-4, 1e-4))
             parted.append(replace(segment, points=(*_where(segment, last=before), before)))
             parted.append(replace(segment, points=(after, *_where(segment, first=after))))
         else:
@@ -185,7 +181,7 @@ def _plane_differences(path, truth):
     errors = path.finest_curve.errors
     points = [(segment.problem, point) for segment in path.finest_curve.segments for point in segment.points]
     for error, (problem, point) in zip(errors, points, strict=True):
-        exact = placed(truth.finest.everywhere, problem, point)[1].observables
+        exact = placed(truth.finest.everywhere, Located(FOLD, problem, point, 1.0)).point.observables
         off = np.abs(exact - point.observables)
         for k in np.flatnonzero(np.isfinite(off)):
             yield exact[CENTRAL_GAP] > FAR, (error[k], off[k], 1e-11 * (1 + abs(exact[k])))
@@ -295,13 +291,10 @@ def test_ripples_of_a_coarse_grid_are_no_extrema():
     assert len(path.branches("load")) - 1 == len(path.states(EXTREMUM)) == 5
 
 
-def test_a_point_that_another_grid_does_not_have_has_no_error_that_bounds_it(paths):
-    class Nowhere(Charted):
-        def __call__(self, _):
-            raise NotConverged("no such state")
-
+def test_a_point_that_another_grid_does_not_have_has_no_error_that_bounds_it(paths, monkeypatch):
     curve = paths[2.0].finest_curve
-    lost = replace(curve, ladder=Ladder((Nowhere(()), curve.ladder.finest), None, curve.ladder.rule))
+    monkeypatch.setattr("halfspace.equilibrium.states.placed", lambda *_: Unsolved("no such state"))
+    lost = replace(curve, ladder=replace(curve.ladder))
     assert np.isinf(lost.errors[:, :3]).all()
     np.testing.assert_array_equal(np.isnan(lost.errors[:, 3]), np.isnan(curve.errors[:, 3]))
     state = lost.at("approach", -1.0, "contact")
@@ -346,7 +339,7 @@ def test_a_point_is_as_uncertain_as_the_gap_by_which_the_plane_across_the_path_i
     touching = [(problem, p, e[3]) for problem, p, e in points if p.observables[3] > 2.8]
     assert len(touching) > 10
     for problem, point, error in touching:
-        exact = placed(finest.finest, problem, point)[1].observables[3]
+        exact = placed(finest.finest, Located(FOLD, problem, point, 1.0)).point.observables[3]
         assert abs(point.observables[3] - exact) <= error
 
 
