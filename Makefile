@@ -12,7 +12,7 @@ export PYTHONPYCACHEPREFIX ?= $(abspath $(VENV)/bytecode)
 endif
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help compare test check bench hard honesty docs clean
+.PHONY: help compare test check bench hard honesty atlas docs clean
 
 # Targets share the environment that they install.
 .NOTPARALLEL:
@@ -39,6 +39,9 @@ hard: $(VENV)/installed-dev ## attempt the hard cases and print how each ended (
 
 honesty: $(VENV)/installed-dev ## hold error estimates against the truth, by families of scenes (QUICK=1: a minute; SEED=n)
 	$(BIN)/python tests/estimates honesty $(if $(QUICK),--quick) $(if $(SEED),--seed $(SEED))
+
+atlas: $(VENV)/installed ## make the file of the atlas anew (two minutes; CHECK=n: compare it with n new curves instead)
+	$(BIN)/python -m halfspace.atlas $(if $(CHECK),--check $(CHECK))
 
 docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs (QUICK=1: without the code)
 	$(BIN)/python tests/project/docs.py $(or $(OUT),build/docs) $(if $(QUICK),--quick)

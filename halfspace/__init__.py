@@ -2,8 +2,8 @@
 
 `trace` gives the whole load-approach curve with its events, `sweep` those of many. Rooms, in the order of reading:
 `laws` and `profiles` (the parts of a contact), `elastic` (half-space and layers alone), `equilibrium` (contact, path,
-events), `accuracy` (to the digits asked for), `theories` (closed forms); under them `scaling` (SI, and other people's
-parameters).
+events), `accuracy` (to the digits asked for), `theories` (closed forms), `atlas` (events and energies by
+series, without solving); under them `scaling` (SI, and other people's parameters).
 
 Conventions are Greenwood's, everywhere. R is the equivalent radius, E* the contact modulus, dgamma the work of
 adhesion, eps the spacing at which the surfaces are in equilibrium, mu = (R dgamma^2/(E*^2 eps^3))^(1/3) the Tabor
@@ -41,7 +41,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from halfspace import laws, profiles, scaling, theories
+    from halfspace import atlas, laws, profiles, scaling, theories
     from halfspace.accuracy.sweep import Sweep, sweep
     from halfspace.accuracy.trace import trace
     from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate
@@ -65,6 +65,7 @@ __all__ = [
     "Stratum",
     "Substrate",
     "Sweep",
+    "atlas",
     "laws",
     "profiles",
     "scaling",
@@ -73,7 +74,7 @@ __all__ = [
     "trace",
 ]
 
-_ROOMS = ("laws", "profiles", "scaling", "theories")
+_ROOMS = ("atlas", "laws", "profiles", "scaling", "theories")
 _HOMES = {
     "trace": "accuracy.trace",
     "sweep": "accuracy.sweep",

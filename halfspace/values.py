@@ -90,6 +90,32 @@ class Valued:
         return {field.name: getattr(self, field.name) for field in _fields(self)}
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class States(Valued):
+    """States of a contact, with the estimated error of each number; all arrays have the shape of what was asked.
+
+    Attributes
+    ----------
+    approach, approach_error : array
+        In eps.
+    load, load_error : array
+        In R dgamma, positive in compression.
+    central_gap, central_gap_error : array
+        H(0) in eps.
+    contact_radius, contact_radius_error : array
+        In beta; nan where the central gap exceeds 3^(1/6) eps.
+    """
+
+    approach: Array
+    load: Array
+    central_gap: Array
+    contact_radius: Array
+    approach_error: Array
+    load_error: Array
+    central_gap_error: Array
+    contact_radius_error: Array
+
+
 def same(a: Any, b: Any) -> bool:
     """Whether two values are of one type and hold the same, arrays and what is not a number included."""
     if a is b:

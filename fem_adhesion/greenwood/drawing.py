@@ -16,8 +16,7 @@ from fem_adhesion.common.numbers import told
 from fem_adhesion.common.page import Table
 from fem_adhesion.common.style import DOTTED
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.states import States
-from halfspace.values import Array, Valued
+from halfspace.values import Array, States, Valued
 
 Look = Mapping[str, Any]
 Note = tuple[str, tuple[float, float]] | tuple[str, tuple[float, float], tuple[float, float]]

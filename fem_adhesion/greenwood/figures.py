@@ -25,10 +25,9 @@ from halfspace import scaling
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Jump
 from halfspace.equilibrium.events import is_fold
-from halfspace.equilibrium.states import States
 from halfspace.theories import closed_forms, dmt
 from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off, carpick_radius
-from halfspace.values import Array, Estimate
+from halfspace.values import Array, Estimate, States
 
 Made = Callable[[Greenwood1997], Plot]
 Parts = Iterator[Line | Note | str]

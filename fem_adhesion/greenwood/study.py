@@ -29,9 +29,8 @@ from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, Jump, cycle
 from halfspace.equilibrium.events import Event, is_fold
-from halfspace.equilibrium.states import States
 from halfspace.laws import LENNARD_JONES
-from halfspace.values import Array, Estimate, Valued
+from halfspace.values import Array, Estimate, States, Valued
 
 PROFILE_RADII = np.linspace(0.0, 4.0, 201)  # beta, and closer to the spike at the contact edge:
 PROFILE_OFFSETS = np.concatenate([sign * np.geomspace(1e-3, 0.3, 40) for sign in (-1, 1)])

@@ -20,13 +20,12 @@ from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import EVENTS, Event, usual
-from halfspace.equilibrium.states import States
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
 from halfspace.profiles import PARABOLOID, Profile, require_profile
-from halfspace.values import Array, Estimate, Valued
+from halfspace.values import Array, Estimate, States, Valued
 
 NUMBERS = tuple(field.name for field in fields(States))
 UNKNOWN = Estimate(math.nan, math.nan)

@@ -27,10 +27,10 @@ from halfspace.equilibrium.events import (
 )
 from halfspace.equilibrium.path import Metric, Point, Segment
 from halfspace.equilibrium.search import states
-from halfspace.equilibrium.states import FinestCurve, Ladder, States, finest_curve, require_coordinate, resampled
+from halfspace.equilibrium.states import FinestCurve, Ladder, finest_curve, require_coordinate, resampled
 from halfspace.errors import InputError
 from halfspace.limits import require_points
-from halfspace.values import Array, Estimate, Valued, shown
+from halfspace.values import Array, Estimate, States, Valued, shown
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -38,7 +38,7 @@ from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, solved_point
 from halfspace.equilibrium.search import Chains, confirmed, turns
 from halfspace.errors import InputError, NotConverged, Unsolved, required
-from halfspace.values import Array, Valued
+from halfspace.values import Array, States, Valued
 
 T = TypeVar("T")
 
@@ -94,32 +94,6 @@ COORDINATES: Mapping[str, tuple[int, str]] = {
     "load": (LOAD, "R dgamma"),
     "central_gap": (CENTRAL_GAP, "eps"),
 }
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class States(Valued):
-    """States of a contact, with the estimated error of each number; all arrays have the shape of what was asked.
-
-    Attributes
-    ----------
-    approach, approach_error : array
-        In eps.
-    load, load_error : array
-        In R dgamma, positive in compression.
-    central_gap, central_gap_error : array
-        H(0) in eps.
-    contact_radius, contact_radius_error : array
-        In beta; nan where the central gap exceeds 3^(1/6) eps.
-    """
-
-    approach: Array
-    load: Array
-    central_gap: Array
-    contact_radius: Array
-    approach_error: Array
-    load_error: Array
-    central_gap_error: Array
-    contact_radius_error: Array
 
 
 def measured(problem: Traceable, points: Sequence[Point], metric: Metric, before: Point | None = None) -> Segment:

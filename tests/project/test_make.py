@@ -24,6 +24,7 @@ TARGETS = {
     "bench": "make bench QUICK=1",
     "honesty": "make honesty QUICK=1 SEED=77",  # a new seed each time finds what is not known yet: no test's verdict
     "hard": HARD,  # test_hard reads what it writes
+    "atlas": "make atlas CHECK=3",
     "docs": "make docs OUT=docs QUICK=1",
     "clean": "make clean",
 }
@@ -80,8 +81,16 @@ def test_docs_shows_every_module_without_a_warning(made):
         for package in ("halfspace", "fem_adhesion")
         for file in (ROOT / package).rglob("*.py")
     }
-    assert pages - {"index"} == modules - {"fem_adhesion/__main__"}
+    assert pages - {"index"} == {module for module in modules if not module.endswith("__main__")}
     assert "beta = (R^2 dgamma/E*)^(1/3)" in (run / "docs/halfspace.html").read_text()
+
+
+def test_atlas_is_as_close_to_its_source_as_it_says(made):
+    run = made("atlas")
+    assert run.code == 0, run.out + run.err
+    shares = re.findall(r"^\S+\.load +\S+ +\S+ +([\d.]+) ", run.out, re.M)
+    assert shares
+    assert all(float(share) <= 1 for share in shares)
 
 
 def test_honesty_judges_every_family(made):

@@ -1,0 +1,250 @@
+"""How the atlas is made: Chebyshev series through events that `halfspace.trace` solves for at their nodes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from importlib.metadata import version
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike
+
+from halfspace.accuracy.trace import trace
+from halfspace.atlas.series import LEAST, MOST, Series, series_of
+from halfspace.equilibrium.devices import cycle
+from halfspace.equilibrium.events import approach_scale
+from halfspace.laws import LENNARD_JONES
+from halfspace.roots import root
+from halfspace.values import Array, Estimate
+
+RTOL = 1e-9
+NODES = 24  # of a piece
+WHOLE = (LEAST, 0.1, 0.5, 2.0, 10.0, 60.0, MOST)  # ends of the pieces of numbers that all curves have
+FOLDED = (0.35, 1.0, 1.6, 2.1)  # ends between the pieces of jumps, in sqrt(ln(tabor/birth))
+NEAR_BIRTH = (0.6975, 0.8)  # Tabor parameters, above the birth of folds, from which it is found
+BIRTH_NODES = 12
+NEXT_BIRTH = 3.974  # Tabor parameter from which curves have a second pair of folds, near which more is checked
+CHECK_POINTS = 8
+
+QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
+EVENTS = ("pull_off", "zero_load")
+OF_JUMPS = (
+    *("take_off.approach", "take_off.load", "take_off.central_gap"),
+    *("landing.load", "landing.central_gap", "energy"),
+)
+IN_CONTACT = {"jump_on": "landing", "jump_off": "take_off"}  # the end of each jump that has a contact radius
+
+UNBORN = Estimate(1.0, 0.0)  # stands for the birth of a number that all curves have
+
+Numbers = Mapping[str, Estimate]
+Node = Callable[[float], Numbers]
+Entry = dict[str, Any]
+
+
+def solved(tabor: float) -> dict[str, Estimate]:
+    """All numbers of a Tabor parameter by `halfspace.trace`, by their names in the atlas; those there are."""
+    path = trace(tabor, rtol=RTOL)
+    states = {name: path.events[name] for name in EVENTS}
+    found = {"energy_released": path.energy}
+    if jumps := cycle(path):
+        for name, jump in (("jump_on", jumps.jump_on), ("jump_off", jumps.jump_off)):
+            states |= {f"{name}.take_off": jump.take_off, f"{name}.landing": jump.landing}
+            found[f"{name}.energy"] = jump.energy
+    found |= {
+        f"{name}.{quantity}": state.estimate(quantity) for name, state in states.items() for quantity in QUANTITIES
+    }
+    return {name: number for name, number in found.items() if not math.isnan(number.value)}
+
+
+class Store:
+    """Nodes solved so far, in a file of one line each, from which an interrupted build goes on."""
+
+    def __init__(self, file: Path, told: Callable[[int, float], None]) -> None:
+        self.file, self.told = file, told
+        self.nodes: dict[float, Numbers] = {}
+        if file.exists():
+            for line in file.read_text().splitlines():
+                tabor, numbers = json.loads(line)
+                self.nodes[tabor] = {name: Estimate(*number) for name, number in numbers.items()}
+
+    def __call__(self, tabor: float) -> Numbers:
+        """Numbers of a Tabor parameter."""
+        if tabor not in self.nodes:
+            self.nodes[tabor] = solved(tabor)
+            numbers = {name: (number.value, number.error) for name, number in self.nodes[tabor].items()}
+            with self.file.open("a") as lines:
+                lines.write(json.dumps([tabor, numbers]) + "\n")
+            self.told(len(self.nodes), tabor)
+        return self.nodes[tabor]
+
+
+def digest() -> str:
+    """Digest, 16 hexadecimal digits, of the code of `halfspace` and of the libraries that computed the numbers."""
+    package = Path(__file__).parents[1]
+    found = hashlib.sha256("".join(f"{name} {version(name)}\n" for name in ("numpy", "scipy")).encode())
+    for file in sorted(package.rglob("*.py")):
+        if file.parent != Path(__file__).parent:
+            found.update(f"{file.relative_to(package)}\n".encode() + file.read_bytes())
+    return found.hexdigest()[:16]
+
+
+def built(node: Node) -> Entry:
+    """Content of the atlas's file, from the numbers at its nodes; Tabor parameters that are no nodes check it."""
+    birth = birth_of_folds(node)
+    of_all = [f"{event}.{quantity}" for event in EVENTS for quantity in QUANTITIES]
+    of_all.remove("zero_load.load")
+    found = {name: whole(node, name) for name in ("energy_released", *of_all)}
+    for jump, end in IN_CONTACT.items():
+        found |= {f"{jump}.{number}": folded(node, jump, number, birth) for number in OF_JUMPS}
+        name = f"{jump}.{end}.contact_radius"
+        found[name] = radius(node, name, birth, series_of(found[f"{jump}.{end}.central_gap"]))
+    return {
+        "source": {
+            "command": "make atlas",
+            "what": f"halfspace.trace(tabor, rtol={RTOL:g}), paraboloid on a half-space, 3-9 law",
+            "version": version("fem-adhesion"),
+            "digest": digest(),
+        },
+        "tabor": [LEAST, MOST],
+        "birth": [birth.value, birth.error],
+        "series": found,
+        "check_points": list(checked(found, node, sample(CHECK_POINTS, 0, birth.value).tolist())),
+    }
+
+
+def sample(count: int, seed: int, birth: float) -> Array:
+    """Random Tabor parameters: a quarter of them close above the birth of folds, or about that of the next pair.
+
+    The rest are spread evenly in the logarithm.
+    """
+    random = np.random.default_rng(seed)
+    close = count // 8
+    near = birth + 10 ** random.uniform(-5, -1, close), NEXT_BIRTH + random.uniform(-0.1, 0.1, close)
+    spread = np.exp(random.uniform(np.log(LEAST), np.log(MOST), count - 2 * close))
+    return np.concatenate([*near, spread])
+
+
+def birth_of_folds(node: Node) -> Estimate:
+    """Tabor parameter at which both folds are born.
+
+    There the difference of their loads vanishes as the root of the distance: its square is smooth and changes sign.
+    """
+    low, high = np.log(NEAR_BIRTH).tolist()
+
+    def born(nodes: int) -> Estimate:
+        places = (low + high) / 2 + (high - low) / 2 * chebyshev.chebpts1(nodes)
+        numbers = [node(tabor) for tabor in np.exp(places).tolist()]
+        apart = [at["jump_on.take_off.load"] - at["jump_off.take_off.load"] for at in numbers]
+        squares = chebyshev.Chebyshev(fitted([(one * one).value for one in apart]), domain=[low, high])
+        x = root(squares, low - (high - low) / 5, low, "the birth of folds; take more nodes", xtol=1e-15)
+        return Estimate(math.exp(x), (apart[0] * apart[0]).error / float(squares.deriv()(x)) * math.exp(x))
+
+    fine, coarse = born(BIRTH_NODES), born(BIRTH_NODES - 2)
+    return Estimate(fine.value, fine.error + abs(fine.value - coarse.value))
+
+
+def whole(node: Node, name: str) -> Entry:
+    """Entry of a number that all curves have."""
+    ends = np.log(WHOLE).tolist()
+    power = 2 if name.endswith("contact_radius") else 1
+    return entry(ends, [piece(lambda x: node(math.exp(x))[name], *part, power) for part in pairwise(ends)], power)
+
+
+def folded(node: Node, jump: str, number: str, birth: Estimate) -> Entry:
+    """Entry of a number of a jump.
+
+    Beside their birth both jumps are one function of x = sqrt(ln(tabor/birth)): to jump off is to jump on with -x.
+    """
+    ends = [0.0, *FOLDED, math.sqrt(math.log(MOST / birth.value))]
+    sign = 1 if jump == "jump_on" else -1
+
+    def either(x: float) -> Estimate:
+        return node(birth.value * math.exp(x**2))[f"{'jump_on' if x > 0 else 'jump_off'}.{number}"]
+
+    both, error = piece(either, -ends[1], ends[1])
+    first = fitted(chebyshev.chebval(sign * (1 + chebyshev.chebpts1(NODES)) / 2, both)), error
+    return entry(ends, [first, *(piece(lambda x: either(sign * x), *part) for part in pairwise(ends[1:]))], 1, birth)
+
+
+def radius(node: Node, name: str, birth: Estimate, gap: Series) -> Entry:
+    """Entry of the square of a contact radius at an end of a jump, from where the central gap is that of the edge."""
+
+    def closed(x: float) -> float:
+        return LENNARD_JONES.edge_gap - float(gap(np.array([birth.value * math.exp(x**2)]))[0][0])
+
+    begin = root(closed, 0.0, FOLDED[0], "the birth of a contact; take more nodes", xtol=1e-15)
+    ends = [begin, *FOLDED, math.sqrt(math.log(MOST / birth.value))]
+    pieces = [piece(lambda x: node(birth.value * math.exp(x**2))[name], *part, 2) for part in pairwise(ends)]
+    return entry(ends, pieces, 2, birth)
+
+
+def entry(ends: Sequence[float], pieces: Iterable[tuple[Array, float]], power: int, birth: Estimate = UNBORN) -> Entry:
+    """Entry of a number's power from its pieces, each coefficients and an error."""
+    coefficients, errors = zip(*pieces, strict=True)
+    half = np.diff(ends) / 2
+    slopes = [np.max(np.abs(chebyshev.chebval(np.linspace(-1, 1), chebyshev.chebder(c)))) for c in coefficients]
+    moves = slopes / half * birth.error / birth.value / 2  # x moves by the relative error of the birth over 2 x
+    return {
+        "birth": birth.value,
+        "power": power,
+        "ends": list(ends),
+        "errors": [float(f"{error:.3g}") for error in errors],
+        "birth_errors": [float(f"{error:.3g}") for error in moves.tolist()],
+        "coefficients": [c.tolist() for c in coefficients],
+    }
+
+
+def piece(at: Callable[[float], Estimate], low: float, high: float, power: int = 1) -> tuple[Array, float]:
+    """Chebyshev coefficients of a number's power on a piece of x, and their error: the nodes' and the series' tail."""
+    places = (low + high) / 2 + (high - low) / 2 * chebyshev.chebpts1(NODES)
+    numbers = [at(x) for x in places.tolist()]
+    numbers = [number * number if power == 2 else number for number in numbers]
+    coefficients = fitted([number.value for number in numbers])
+    return coefficients, max(number.error for number in numbers) + float(np.abs(coefficients[-2:]).sum())
+
+
+def fitted(values: ArrayLike) -> Array:
+    """Chebyshev coefficients of the polynomial through values at the Chebyshev points of the first kind."""
+    f = np.asarray(values)
+    weights = np.where(np.arange(f.size), 2, 1) / f.size
+    return np.asarray(weights * (chebyshev.chebvander(chebyshev.chebpts1(f.size), f.size - 1).T @ f))
+
+
+class Deviation(NamedTuple):
+    """How far the atlas is from its source: in the number's unit, relative to its scale, and to both errors."""
+
+    value: float
+    relative: float
+    of_errors: float
+
+
+def deviations(entries: Mapping[str, Entry], numbers: Numbers, tabor: float) -> dict[str, Deviation]:
+    """How far series are from the numbers of a Tabor parameter.
+
+    The scale of an approach is eps and the range of those of all events, see
+    `halfspace.equilibrium.events.approach_scale`; that of other numbers is their size.
+    """
+    scale = approach_scale(number.value for name, number in numbers.items() if name.endswith("approach"))
+    found = {}
+    for name in numbers.keys() & entries.keys():
+        value, error = (float(array[0]) for array in series_of(entries[name])(np.array([tabor])))
+        off, number = value - numbers[name].value, numbers[name]
+        size = scale if name.endswith("approach") else abs(number.value)
+        found[name] = Deviation(off, abs(off) / size, abs(off) / (error + number.error))
+    return found
+
+
+def checked(entries: Mapping[str, Entry], node: Node, tabors: Sequence[float]) -> Iterable[Entry]:
+    """Check points: what the source says of Tabor parameters that are no nodes, and how far the series are off."""
+    for tabor in tabors:
+        numbers = node(tabor)
+        for name, off in deviations(entries, numbers, tabor).items():
+            value, error = numbers[name].value, numbers[name].error
+            point = {"number": name, "reference": value, "reference_error": error, "deviation": off.value}
+            yield {"tabor": tabor, **point}
