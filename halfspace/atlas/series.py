@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from halfspace.errors import InputError
@@ -79,7 +78,7 @@ class Series(Valued):
     @cached_property
     def _slopes(self) -> Array:
         """Coefficients of the derivative by the place t on a piece, -1 to 1."""
-        return np.asarray(chebyshev.chebder(self.coefficients))
+        return np.asarray(np.polynomial.chebyshev.chebder(self.coefficients))
 
 
 def _sum(coefficients: Array, piece: Index, t: Array) -> Array:
@@ -93,7 +92,7 @@ def _sum(coefficients: Array, piece: Index, t: Array) -> Array:
 @cache
 def stored() -> dict[str, Any]:
     """Content of the atlas's file."""
-    content: dict[str, Any] = json.loads(files(__package__).joinpath("atlas.json").read_text(encoding="utf-8"))
+    content: dict[str, Any] = json.loads(Path(__file__).with_name("atlas.json").read_text(encoding="utf-8"))
     return content
 
 

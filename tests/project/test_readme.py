@@ -36,6 +36,7 @@ LINES = {
     "make check": MAKE,
     "make bench": MAKE,
     "make honesty": MAKE,
+    "make atlas": MAKE,
     "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json": COMPARE,
     "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve": (
         "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve"

@@ -1,0 +1,302 @@
+"""The atlas says what its source says, as closely as it claims, and needs no solver for it."""
+
+import json
+import subprocess
+import sys
+import tomllib
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import HalfSpace, Scene
+from halfspace import atlas
+from halfspace.atlas import build
+from halfspace.atlas.__main__ import main
+from halfspace.atlas.series import stored
+from halfspace.errors import InputError
+from halfspace.theories import closed_forms
+from halfspace.values import Estimate
+
+ROOT = Path(__file__).parents[3]
+FILE = ROOT / "halfspace/atlas/atlas.json"
+BIRTH = atlas.birth_of_folds()
+STATES = {
+    "pull_off": lambda tabor, **asked: atlas.pull_off(tabor, **asked),
+    "zero_load": lambda tabor, **asked: atlas.zero_load(tabor, **asked),
+    **{
+        f"{jump}.{end}": lambda tabor, jump=jump, end=end, **asked: getattr(getattr(atlas, jump)(tabor, **asked), end)
+        for jump in ("jump_on", "jump_off")
+        for end in ("take_off", "landing")
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def known():
+    """Numbers by the source at random Tabor parameters, those beside both births of folds among them."""
+    return {tabor: build.solved(tabor) for tabor in build.sample(40, 2, BIRTH.value).tolist()}
+
+
+# --- against its source ---
+
+
+@pytest.mark.parametrize("event", STATES)
+def test_loads_and_approaches_are_those_of_the_source(known, event):
+    for tabor, numbers in known.items():
+        approaches = [number.value for name, number in numbers.items() if name.endswith("approach")]
+        sizes = {"approach": 1 + np.ptp(approaches)}
+        state = STATES[event](tabor)
+        for quantity in ("approach", "load"):
+            number = numbers.get(f"{event}.{quantity}")
+            if number is None:
+                assert tabor < BIRTH.value
+                assert np.isnan(getattr(state, quantity))
+                continue
+            value, error = getattr(state, quantity), getattr(state, f"{quantity}_error")
+            assert abs(value - number.value) <= error + number.error
+            if event != "zero_load" or quantity == "approach":
+                # A landing's load counts by that from which it has jumped, as in a cycle's tolerance.
+                taken_off = numbers.get(event.replace("landing", "take_off") + ".load", number)
+                size = sizes.get(quantity, max(abs(number.value), abs(taken_off.value)))
+                assert abs(value - number.value) <= 1e-9 * size + (number.error if tabor < 0.699 else 0)
+
+
+def test_every_number_is_within_its_error_of_the_source(known):
+    for tabor, numbers in known.items():
+        found = build.deviations(stored()["series"], numbers, tabor)
+        assert found.keys() == numbers.keys() - {
+            "zero_load.load",
+            "jump_on.landing.approach",
+            "jump_off.landing.approach",
+        }
+        assert all(off.of_errors <= 1 for off in found.values())
+
+
+def test_energies_are_those_of_the_source(known):
+    for tabor, numbers in known.items():
+        lost = sum((numbers.get(f"{jump}.energy", Estimate(0, 0)) for jump in build.IN_CONTACT), Estimate(0, 0))
+        for found, number in (
+            (atlas.energy_lost(tabor), lost),
+            (atlas.energy_released(tabor), numbers["energy_released"]),
+        ):
+            assert Estimate(found.energy, found.energy_error).agrees(number)
+
+
+def test_estimates_are_no_larger_than_the_accuracy_needs():
+    """An estimate that is right because it is huge says nothing."""
+    tabor = np.geomspace(0.72, 300, 50)
+    for event, states in STATES.items():
+        state = states(tabor)
+        assert (state.approach_error < 3e-9 * (1 + 2 * tabor)).all(), event
+        assert (state.load_error < 3e-9).all(), event
+
+
+def test_the_source_has_not_changed():
+    """What the check points were is what the source says now; if not, `make atlas`."""
+    points = stored()["check_points"]
+    for tabor in sorted({point["tabor"] for point in points})[2:6:3]:
+        now = build.solved(tabor)
+        for point in (point for point in points if point["tabor"] == tabor):
+            assert now[point["number"]].agrees(Estimate(point["reference"], point["reference_error"])), point
+
+
+def test_a_source_that_has_changed_is_found():
+    numbers = build.solved(1.0)
+    series = stored()["series"]
+    assert max(off.of_errors for off in build.deviations(series, numbers, 1.0).values()) < 1
+    changed = numbers | {"pull_off.load": numbers["pull_off.load"] * (1 + 1e-8)}
+    assert build.deviations(series, changed, 1.0)["pull_off.load"].of_errors > 1
+
+
+def test_finite_elements_agree():
+    for tabor in (0.37, 3.3):
+        path = fem_adhesion.trace(Scene(tabor, body=HalfSpace(poisson=0.3)), rtol=1e-7)
+        states = {name: STATES[name](tabor) for name in ("pull_off", "zero_load")}
+        if tabor > BIRTH.value:
+            states |= {jump: STATES[f"{jump}.take_off"](tabor) for jump in ("jump_on", "jump_off")}
+        for name, state in states.items():
+            event = path.event(name)
+            assert abs(event.approach - state.approach) <= 1e-6 * path.approach_scale
+            assert abs(event.load - state.load) <= 1e-6 * max(abs(event.load), 1e-6 if name == "zero_load" else 0)
+
+
+# --- births and limits ---
+
+
+def test_folds_are_born_where_the_source_says():
+    for side in (-1, 1):
+        assert halfspace.trace(BIRTH.value * (1 + side * 1e-7), rtol=1e-9).jumps is (side > 0)
+    assert BIRTH.error < 1e-10
+
+
+def test_jumps_begin_at_the_birth_of_folds():
+    tabor = np.array([0.01, BIRTH.value * (1 - 1e-9), BIRTH.value * (1 + 1e-12), 0.8])
+    for jump in (atlas.jump_on(tabor), atlas.jump_off(tabor)):
+        for number in (jump.energy, jump.take_off.load, jump.landing.load, jump.take_off.approach_error):
+            assert np.isnan(number).tolist() == [True, True, False, False]
+        assert abs(jump.energy[2]) <= jump.energy_error[2]
+    assert atlas.energy_lost(tabor).energy[:2].tolist() == [0, 0]
+    on, off = (jump(tabor).take_off for jump in (atlas.jump_on, atlas.jump_off))
+    assert on.load[2] == pytest.approx(off.load[2], abs=on.load_error[2])
+
+
+def test_a_contact_begins_as_the_root_where_the_central_gap_is_the_edges():
+    edge = halfspace.laws.LENNARD_JONES.edge_gap
+    tabor = np.linspace(BIRTH.value * 1.0001, 0.75, 400)
+    for state in (atlas.jump_on(tabor).landing, atlas.jump_off(tabor).take_off):
+        closed = state.central_gap < edge
+        np.testing.assert_array_equal(np.isfinite(state.contact_radius), closed)
+        radius = state.contact_radius[closed]
+        assert radius[0] < 0.2 * radius[-1]
+        assert (np.diff(radius) > 0).all()
+
+
+def _order(deviation, tabor):
+    return np.log(deviation[1] / deviation[0]) / np.log(tabor[1] / tabor[0])
+
+
+def test_the_least_tabors_tend_to_a_rigid_sphere_as_its_bulge_does():
+    """The half-space bulges by pi sqrt2 mu^(3/2) eps, see `halfspace.theories.criteria`: so much changes the load."""
+    tabor = np.array([0.01, 0.012])
+    pull_off, zero_load = atlas.pull_off(tabor), atlas.zero_load(tabor)
+    assert _order(pull_off.load - closed_forms.BRADLEY_PULL_OFF, tabor) == pytest.approx(1.5, abs=0.01)
+    assert _order(-pull_off.approach, tabor) == pytest.approx(1.5, abs=0.01)
+    assert _order(zero_load.approach - (1 - 4 ** (-1 / 6)), tabor) == pytest.approx(1.5, abs=0.04)
+
+
+@pytest.mark.parametrize("event", ["pull_off", "zero_load", "jump_off.take_off"])
+def test_the_largest_tabors_tend_to_jkr_as_the_law_s_tail_does(event):
+    """The tension over an opening crack falls as h^-3, h as the root of the distance: the correction is mu^-2 ln(mu).
+
+    In units of mu eps, as approaches are in JKR's theory, that of the approach too.
+    """
+    tabor = np.array([100.0, 173.2, 300.0])
+    limit = [getattr(closed_forms, f"jkr_{event.split('.')[0]}")(one) for one in tabor]
+    for quantity, unit in (("load", 1.0), ("approach", tabor), ("contact_radius", 1.0)):
+        if (event, quantity) == ("zero_load", "load"):
+            continue
+        value = getattr(STATES[event](tabor), quantity)
+        deviation = np.abs(value - [getattr(state, quantity) for state in limit]) / unit * tabor**2
+        first, second = np.diff(deviation) / np.diff(np.log(tabor))
+        assert second == pytest.approx(first, rel=0.05)  # linear in ln(mu)
+
+
+def test_the_jump_on_tends_to_the_attraction_of_a_thin_layer_of_gap():
+    """(|alpha*| + 1)^(7/2) grows as mu^(3/2): see `halfspace.theories.criteria`."""
+    tabor = np.array([200.0, 300.0])
+    assert _order(1 - atlas.jump_on(tabor).take_off.approach, tabor) == pytest.approx(3 / 7, abs=1e-6)
+
+
+# --- as functions ---
+
+
+def test_pieces_join_within_their_errors():
+    for name, entry in stored()["series"].items():
+        series, birth = build.series_of(entry), entry["birth"]
+        x = np.array(entry["ends"][1:-1])
+        ends = birth * np.exp(x if birth == 1 else x**2)
+        (before, error), (after, other) = (series(ends * (1 + side * 1e-13)) for side in (-1, 1))
+        np.testing.assert_array_less(np.abs(after - before), error + other + 1e-11 * np.abs(before), err_msg=name)
+
+
+@pytest.mark.parametrize("event", STATES)
+def test_derivatives_are_those_of_the_values(event):
+    tabor, d = np.array([0.0123, 0.3, 0.75, 1.7, 3.974, 25.0, 250.0]), 2e-5
+    rates = STATES[event](tabor, derivative=1)
+    low, high = (STATES[event](tabor * (1 + side * d)) for side in (-1, 1))
+    for quantity in ("approach", "load", "central_gap", "contact_radius"):
+        difference = (getattr(high, quantity) - getattr(low, quantity)) / (2 * tabor * d)
+        scale = (np.abs(getattr(high, quantity)) + 1e-6) / tabor
+        np.testing.assert_allclose(getattr(rates, quantity) / scale, difference / scale, rtol=3e-6, atol=1e-7)
+
+
+def test_derivatives_of_energies_are_those_of_the_values():
+    tabor, d = np.array([0.05, 0.9, 7.0]), 1e-4
+    for energy in (atlas.energy_released, atlas.energy_lost):
+        low, high = (energy(tabor * (1 + side * d)).energy for side in (-1, 1))
+        assert energy(tabor, derivative=1).energy == pytest.approx((high - low) / (2 * d * tabor), rel=1e-5, abs=1e-9)
+
+
+def test_shapes_are_those_asked_for():
+    for asked in (2.0, [2.0, 3.0], [[2.0], [3.0]], []):
+        for found in (atlas.pull_off(asked).load, atlas.zero_load(asked).load, atlas.energy_lost(asked).energy):
+            assert np.shape(found) == np.shape(asked)
+    assert isinstance(atlas.pull_off(2.0).load, float)
+    assert atlas.pull_off([2.0, 3.0]).load[1] == atlas.pull_off(3.0).load
+
+
+@pytest.mark.parametrize("event", [atlas.pull_off, atlas.jump_on, atlas.energy_lost])
+def test_what_is_outside_is_refused(event):
+    for outside, remedy in (
+        (0.009, "halfspace.trace"),
+        (300.1, "JKR"),
+        (np.nan, "tabor"),
+        ([1.0, -2.0], "halfspace.trace"),
+    ):
+        with pytest.raises(InputError, match=rf"outside the atlas, 0.01 <= tabor <= 300; .*{remedy}|nan"):
+            event(outside)
+    for inside in (0.01, 300.0):
+        event(inside)
+
+
+# --- the package ---
+
+
+def test_it_needs_numpy_alone():
+    code = (
+        "import sys; from halfspace import atlas; atlas.jump_on(2.0); print([m for m in sys.modules if 'scipy' in m])"
+    )
+    assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "[]"
+    solver = "print([m for m in sys.modules if m.startswith(('halfspace.acc', 'halfspace.equ', 'halfspace.el'))])"
+    assert subprocess.check_output([sys.executable, "-c", f"{code}; {solver}"], text=True).split() == ["[]", "[]"]
+
+
+def test_the_file_is_small_and_packed():
+    assert FILE.stat().st_size < 300_000
+    packed = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]["halfspace"]
+    assert FILE in [file for pattern in packed for file in (ROOT / "halfspace").glob(pattern)]
+
+
+def test_the_file_says_what_made_it():
+    content = json.loads(FILE.read_text())
+    assert content["source"].keys() == {"command", "what", "version", "digest"}
+    assert {point["number"] for point in content["check_points"]} == content["series"].keys()
+    for entry in content["series"].values():
+        assert (
+            len(entry["ends"]) - 1 == len(entry["coefficients"]) == len(entry["errors"]) == len(entry["birth_errors"])
+        )
+        assert all(a < b for a, b in pairwise(entry["ends"]))
+
+
+# --- how it is made ---
+
+
+def test_a_build_goes_on_from_the_nodes_that_are_solved(tmp_path, monkeypatch):
+    solved = []
+    monkeypatch.setattr(build, "solved", lambda tabor: solved.append(tabor) or {"pull_off.load": Estimate(tabor, 0.0)})
+    for _ in range(2):
+        node = build.Store(tmp_path / "nodes.jsonl", lambda *_: None)
+        assert [node(tabor)["pull_off.load"].value for tabor in (0.1, 0.2, 0.1)] == [0.1, 0.2, 0.1]
+    assert solved == [0.1, 0.2]
+
+
+def test_a_series_through_a_known_number_is_that_number():
+    entry = build.whole(lambda tabor: {"number": Estimate(np.sin(np.log(tabor)), 1e-12)}, "number")
+    tabor = np.geomspace(0.01, 300, 101)
+    value, error = build.series_of(entry)(tabor)
+    assert (np.abs(value - np.sin(np.log(tabor))) <= error).all()
+    assert (error < 1e-10).all()
+
+
+def test_a_check_fails_where_the_file_is_off(monkeypatch, capsys, tmp_path):
+    numbers = build.solved(1.0)
+    monkeypatch.setattr(build, "sample", lambda *_: np.array([1.0]))
+    monkeypatch.setattr(build, "solved", lambda _: numbers)
+    assert main(["--check", "1", "--nodes", str(tmp_path / "right")]) == 0
+    monkeypatch.setattr(build, "solved", lambda _: numbers | {"pull_off.load": Estimate(-5.25, 1e-10)})
+    assert main(["--check", "1", "--nodes", str(tmp_path / "wrong")]) == 1
+    assert "pull_off.load" in capsys.readouterr().out
