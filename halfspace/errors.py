@@ -6,8 +6,9 @@ Every other exception is a defect of the program, and shows its traceback.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, TypeVar, final
+from typing import Any, Literal, TypeVar, final
 
 T = TypeVar("T")
 
@@ -53,20 +54,34 @@ class GridTooCoarse(NotConverged):
 @final
 @dataclass(frozen=True)
 class Unsolved:
-    """What a solver returns in the place of a solution: the reason why there is none, with the remedy.
+    """What a solver returns in the place of a solution: the reason why there is none, and the kind of its error.
 
     It is false, so that ``first or second`` is the second where the first is not solved. Where no other way is left to
-    try `required` raises it as NotConverged.
+    try `required` raises it.
     """
 
     reason: str
+    kind: type[InputError | NotConverged] = NotConverged
 
     def __bool__(self) -> Literal[False]:
         return False
 
 
 def required(outcome: T | Unsolved) -> T:
-    """Return a solution, or raise NotConverged with the reason why there is none."""
+    """Return a solution, or raise an error of its kind with the reason why there is none."""
     if isinstance(outcome, Unsolved):
-        raise NotConverged(outcome.reason)
+        raise outcome.kind(outcome.reason)
     return outcome
+
+
+def tried(solve: Callable[..., T], *given: Any, refusals: bool = False, **how: Any) -> T | Unsolved:
+    """Solve a whole case, or say why it was not solved, so that a study goes on with the next.
+
+    With `refusals` a case that is outside what the solver serves, an InputError, is one of these as well.
+    """
+    try:
+        return solve(*given, **how)
+    except (InputError, NotConverged) as error:
+        if isinstance(error, InputError) and not refusals:
+            raise
+        return Unsolved(str(error), type(error))

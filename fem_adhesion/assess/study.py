@@ -21,7 +21,7 @@ from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene
 from halfspace.elastic.layers import Layers
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import InputError, Unsolved, tried
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
@@ -144,10 +144,8 @@ def _traced(model: str, contact: Contact, rtol: float = USUAL.rtol, **scene: Any
 
 def _tried(name: str, make: Callable[[Contact], Answer], contact: Contact) -> tuple[Answer | None, str | None]:
     """Answer, or why there is none: the contact is outside what the solver serves, or the solver gave up."""
-    try:
-        return make(contact), None
-    except (InputError, NotConverged) as error:
-        return None, f"{name} not solved: {error}"
+    answer = tried(make, contact, refusals=True)
+    return (None, f"{name} not solved: {answer.reason}") if isinstance(answer, Unsolved) else (answer, None)
 
 
 def _profile(contact: Contact) -> Prediction:
@@ -188,10 +186,8 @@ def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = U
     tabor = contact.units.tabor
     if tabor > USUAL.computed:
         return predictions.large_tabor_on(layer, tabor, contact.reduced_stiffness, contact.units)
-    try:
-        return _traced(ON_LAYER, contact, rtol, profile=profile, body=layer)
-    except NotConverged:  # where a jump lands may be lost between two points of one path and not of a finer one
-        return _traced(ON_LAYER, contact, rtol / 10, profile=profile, body=layer)
+    traced = partial(_traced, ON_LAYER, contact, profile=profile, body=layer)
+    return tried(traced, rtol) or traced(rtol / 10)  # a jump's landing, lost on a path, may be found on a finer one
 
 
 def _thin_sample(contact: Contact, half_space: Prediction) -> ThinSample | None:

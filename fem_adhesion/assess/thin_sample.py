@@ -14,7 +14,7 @@ from fem_adhesion.assess.predictions import QUANTITIES, Prediction, Quantity, re
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.common.contact import Contact
 from halfspace.elastic.layers import Layer, Layers
-from halfspace.errors import NotConverged
+from halfspace.errors import NotConverged, tried
 from halfspace.limits import LAYER_THICKNESS
 from halfspace.roots import root
 from halfspace.theories.closed_forms import hertz_load
@@ -108,10 +108,7 @@ def enough(contact: Contact, half_space: Prediction, on_layer: Callable[[Layers]
 
     # A layer bends as a whole by W/h to the first order, which moves approaches; the load follows from its curvature.
     for name, names, power in (("pull_off_force", ("pull_off_force",), 3.0), ("every quantity", QUANTITIES, 1.0)):
-        try:
-            found = _outermost(partial(off, names=names), power)
-        except NotConverged:
-            found = "not solved"
+        found = tried(_outermost, partial(off, names=names), power) or "not solved"
         if isinstance(found, str):
             yield Enough(name, note=found)
         else:

@@ -30,7 +30,7 @@ from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import usual
-from halfspace.errors import NotConverged
+from halfspace.errors import tried
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued
 
@@ -62,10 +62,7 @@ def _limit(quantity: str, value: float, tabors: Sequence[float]) -> Row:
 
 def _found(solve: Callable[..., Answer], *given: Any, **how: Any) -> Answer | None:
     """Answer of a solver, None where it does not converge: such a row disagrees."""
-    try:
-        return solve(*given, **how)
-    except NotConverged:
-        return None
+    return tried(solve, *given, **how) or None
 
 
 # Equations

@@ -11,7 +11,7 @@ from itertools import chain
 from fem_adhesion.common.jobs import WorkerDied, stream
 from fem_adhesion.crosscheck.comparison import Case
 from fem_adhesion.scene import Scene
-from halfspace.errors import NotConverged
+from halfspace.errors import tried
 
 Part = tuple[Scene, bool]
 """A scene, and whether it is to be solved; the rows that need no solution are those of tabor 1 for all blocks of a
@@ -46,9 +46,7 @@ def _compared(part: Part, *, rtol: float) -> Case:
     from fem_adhesion.crosscheck import study  # where the work is done, and there alone
 
     scene, solved = part
-    try:
-        if solved:
-            return study.compare(scene, rtol=rtol, before=())
+    if not solved:
         return Case(scene, rows=tuple(study.unsolved(scene, rtol=rtol)))
-    except NotConverged as error:
-        return Case(scene, reason=str(error))
+    case = tried(study.compare, scene, rtol=rtol, before=())
+    return case or Case(scene, reason=case.reason)

@@ -14,7 +14,6 @@ never from a choice.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 
@@ -35,7 +34,7 @@ from halfspace.equilibrium.conditions import ROUND_OFF, Located
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import EVENTS, FOLDS
-from halfspace.errors import NotConverged
+from halfspace.errors import tried
 from halfspace.limits import require_rtol
 from halfspace.values import Array, Estimate
 
@@ -79,8 +78,7 @@ def compare(
         left = [row for row in case.rows if row.between == SOLVERS and row.verdict != "agree"]
         wins = bool(left) and not any(row.error > reach * row.budget for row in left)
         if rtol > closer * USUAL.tightest and case.verdict == "inconclusive" and wins:
-            with suppress(NotConverged):
-                fe, case = _solved(scene, rtol, rtol / closer, solve)
+            fe, case = tried(_solved, scene, rtol, rtol / closer, solve) or (fe, case)
     apart = *_by_triangles(scene, fe, rtol), *elimination.rows(scene, fe), *from_scratch.events(scene, fe)
     return replace(case, rows=(*known, *case.rows, *apart))
 
@@ -238,9 +236,8 @@ def _by_triangles(scene: Scene, fe: EquilibriumPath, rtol: float) -> Iterator[Ro
     """
     if scene.checked_by != "half-space" or scene.body.layered or scene.sized:
         return
-    path, rtol = None, max(rtol, USUAL.share * KERNELS["triangles"].least)
-    with suppress(NotConverged):
-        path = halfspace.trace(**scene.for_half_space, kernel="triangles", rtol=rtol / USUAL.share)
+    rtol = max(rtol, USUAL.share * KERNELS["triangles"].least)
+    path = tried(halfspace.trace, **scene.for_half_space, kernel="triangles", rtol=rtol / USUAL.share) or None
     folds = {name: OF_FOLDS[name] for name in ("approach", "load")}
     asked = {"pull_off": COMPARED["pull_off"], **dict.fromkeys(FOLDS, folds)}
     yield from _at_events(asked, path, fe, rtol, TRIANGLES, fe, "triangles: ")

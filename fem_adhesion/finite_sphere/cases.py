@@ -26,7 +26,7 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import Event, usual
 from halfspace.equilibrium.newton import Traceable
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import InputError, Unsolved, tried
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.values import Estimate
@@ -156,11 +156,11 @@ def compute(case: SphereCase) -> Record:
     Any other error is a defect of the program and ends the study.
     """
     began = time.perf_counter()
-    try:
-        values = MODELS[case.model].solve(case)
-    except (InputError, NotConverged) as error:
-        return Record(case, "refused", {}, str(error), time.perf_counter() - began, type(error).__name__)
-    return Record(case, "solved", values, "", time.perf_counter() - began)
+    values = tried(MODELS[case.model].solve, case, refusals=True)
+    seconds = time.perf_counter() - began
+    if isinstance(values, Unsolved):
+        return Record(case, "refused", {}, values.reason, seconds, values.kind.__name__)
+    return Record(case, "solved", values, "", seconds)
 
 
 def quantities_of(path: EquilibriumPath) -> dict[str, Estimate]:

@@ -25,7 +25,7 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.errors import NotConverged
+from halfspace.errors import Unsolved, tried
 from halfspace.values import Array, Valued
 
 EXTENT = 6.0  # radius of uniform grids in beta: less than 0.6 % of the pull-off load is lost beyond it for mu >= 1
@@ -114,11 +114,11 @@ def false_rise(
     """
     found: list[Ripple] = []
     for path in paths:
-        try:
-            found.append(ripple(path, spacing, window * spacing, steps, body))
-        except NotConverged as error:
-            return Rise(tuple(found), f"no solution at mu = {path.tabor:.3g}: {error}")
-        if found[-1].pull_off < enough:
+        uneven = tried(ripple, path, spacing, window * spacing, steps, body)
+        if isinstance(uneven, Unsolved):
+            return Rise(tuple(found), f"no solution at mu = {path.tabor:.3g}: {uneven.reason}")
+        found.append(uneven)
+        if uneven.pull_off < enough:
             return Rise(tuple(found), f"the load is below {enough:g} R dgamma")
     return Rise(tuple(found), "no larger mu was asked for")
 
@@ -173,10 +173,9 @@ def _attempt(problem: ContactProblem, name: str, iterate: Iteration, load: float
     start = problem.undeformed(1.0)
     start[:-2] = np.maximum(start[:-2], 0.0)
     began, sweeps = time.perf_counter(), None
-    try:
-        found = iterate(problem, start)
-    except NotConverged as error:
-        outcome = str(error)
+    found = tried(iterate, problem, start)
+    if isinstance(found, Unsolved):
+        outcome = found.reason
     else:
         sweeps, outcome = found.sweeps, f"load within {abs(found.observables[LOAD] - load):.0e} R dgamma of Newton's"
     return Attempt(problem.tabor, name, sweeps, outcome, time.perf_counter() - began, newton_seconds)

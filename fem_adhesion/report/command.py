@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 
 from fem_adhesion.common.jobs import progress_bar
@@ -37,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.report import walk
     from fem_adhesion.report.page import Contents, page, section_of
     from fem_adhesion.scene import Scene
-    from halfspace.errors import NotConverged
+    from halfspace.errors import tried
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
@@ -53,12 +52,13 @@ def run(options: argparse.Namespace) -> int:
         for case in crosscheck.run(scenes, rtol=options.rtol):
             cases.append(case)
             step("comparison", len(cases), len(scenes))
-        contents = Contents(cases, None, None, directories)
-        try:
+
+        def walked() -> Contents:
             curves = solve.solve(question, step)
-            contents = replace(contents, curves=curves, walk=walk.walk(curves, progress=step))
-        except NotConverged as error:
-            contents = replace(contents, lost=str(error))
+            return Contents(cases, curves, walk.walk(curves, progress=step), directories)
+
+        found = tried(walked)
+        contents = found or Contents(cases, None, None, directories, lost=found.reason)
         step("page", 0, 1)
         file.write(page(contents))
     verdict = "failed" if contents.lost else overall_verdict(cases)

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from typing import final
 from xml.etree import ElementTree
 
 from matplotlib import rc_context
@@ -35,6 +36,7 @@ WORDS = {
 """What each verdict is called, worst first."""
 
 
+@final
 @dataclass(frozen=True)
 class Contents:
     """What goes into a report: the cross-check, one curve, by both solvers and state by state, and other results.

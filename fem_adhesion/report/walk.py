@@ -22,7 +22,7 @@ from fem_adhesion.fields import State, half_space_beside, states_along
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import usual
-from halfspace.errors import NotConverged
+from halfspace.errors import tried
 from halfspace.values import Array, Valued
 
 SEEN = Discretisation(degree=4)  # of the fields: right to the width of a line
@@ -85,11 +85,9 @@ def walk(curves: Curves, *, states: int | None = None, progress: Progress = unhe
 def _station(state: State, radii: Array, places: Array) -> Station:
     approach, load, central_gap, contact_radius = (float(value) for value in state.observables)
     operator = state.problem.operator.at(1.0)
-    try:
-        beside = half_space_beside(state)
+    beside, other = tried(half_space_beside, state), [np.full_like(radii, np.nan)] * 2
+    if beside:
         other = [operator.values_at(radii, values) for values in (beside.pressure, beside.gap)]
-    except NotConverged:
-        other = [np.full_like(radii, np.nan)] * 2
     own = [operator.values_at(radii, values) for values in (state.pressure, state.gap)]
     pressure, gap = (np.array(both) for both in zip(own, other, strict=True))
     point = state.name, state.point.arclength, approach, load, central_gap, contact_radius, state.stable

@@ -38,11 +38,12 @@ from fem_adhesion.speed.methods import (
     estimates,
     trace_elements,
 )
-from halfspace.errors import GridTooCoarse, InputError, NotConverged
+from halfspace.errors import GridTooCoarse, InputError, NotConverged, Unsolved, tried
 from halfspace.limits import require_between
 from halfspace.values import Array, Estimate
 
 Status = Literal["converged", "too coarse", "refused", "failed"]
+STATUS: dict[type[Exception], Status] = {InputError: "refused", GridTooCoarse: "too coarse", NotConverged: "failed"}
 EXPONENTS = tuple(f"{cost}, x = {x}" for x in ("unknowns", "1/error") for cost in ("time", "peak memory"))
 VISIBLE = 4.0  # MiB of memory below which a growth says nothing
 TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid surfaces leave nothing to compare
@@ -310,13 +311,12 @@ def _seconds(work: Callable[[], object]) -> float:
 def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) -> Timing:
     """One rung: run it, time it again if asked, and compare with the truth."""
     began = time.perf_counter()
-    try:
-        (unknowns, values), memory = with_peak_memory(lambda: step.run(tabor))
-    except (InputError, NotConverged) as error:
-        refused: Status = "refused" if isinstance(error, InputError) else "failed"
-        status: Status = "too coarse" if isinstance(error, GridTooCoarse) else refused
-        return Timing(method, step.setting, status, time.perf_counter() - began, str(error))
+    outcome = tried(with_peak_memory, lambda: step.run(tabor), refusals=True)
     seconds = time.perf_counter() - began
+    if isinstance(outcome, Unsolved):
+        status = next(status for kind, status in STATUS.items() if issubclass(outcome.kind, kind))
+        return Timing(method, step.setting, status, seconds, outcome.reason)
+    (unknowns, values), memory = outcome
     if again:
         seconds = min(seconds, _seconds(lambda: step.run(tabor)))
     errors = {  # not below the truth's own uncertainty, since nothing less can be told

@@ -15,7 +15,7 @@ from fem_adhesion.weak_form.body import Array
 from fem_adhesion.weak_form.contact import Contact
 from fem_adhesion.weak_form.newton import Equilibrium, along, at_approach, at_load, even, newton, on_axis
 from fem_adhesion.weak_form.settings import USUAL, Settings
-from halfspace.errors import NotConverged
+from halfspace.errors import NotConverged, Unsolved, tried
 from halfspace.values import Valued
 
 
@@ -116,9 +116,8 @@ class Path(Valued):
             if s < how.shortest or len(points) > how.most_points:
                 at = f"alpha = {before.state.approach:.4g} eps"
                 raise NotConverged(f"the weak form's path ends at {at}; try another to_load or a smaller tabor")
-            try:
-                point = self.onward(before, s, before.state.y + s * (before.direction + s / 2 * bend))
-            except NotConverged:
+            point = tried(self.onward, before, s, before.state.y + s * (before.direction + s / 2 * bend))
+            if isinstance(point, Unsolved):
                 s /= 2
                 continue
             opened = abs((1 + point.observables[2]) / (1 + before.observables[2]) - 1) / how.opening

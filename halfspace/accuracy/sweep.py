@@ -20,7 +20,7 @@ from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import EVENTS, Event, usual
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import InputError, tried
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
@@ -136,10 +136,8 @@ def sweep(
 
 def summary(tabor: float, **asked: Any) -> Summary:
     """Trace one curve of a sweep, asked as of `halfspace.trace`; a curve that cannot be traced says why."""
-    try:
-        return Summary.of(trace(tabor, **asked))
-    except NotConverged as error:
-        return Summary.failed(tabor, str(error))
+    found = tried(lambda: Summary.of(trace(tabor, **asked)))
+    return found or Summary.failed(tabor, found.reason)
 
 
 def collected(summaries: Sequence[Summary]) -> Sweep:
