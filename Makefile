@@ -43,7 +43,7 @@ honesty: $(VENV)/installed-dev ## hold error estimates against the truth, by fam
 atlas: $(VENV)/installed ## make the file of the atlas anew (two minutes; CHECK=n: compare it with n new curves instead)
 	$(BIN)/python -m halfspace.atlas $(if $(CHECK),--check $(CHECK))
 
-docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs (QUICK=1: without the code)
+docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs (QUICK=1: without the code and the search)
 	$(BIN)/python tests/project/docs.py $(or $(OUT),build/docs) $(if $(QUICK),--quick)
 
 clean: ## remove the environment and all caches

@@ -68,6 +68,7 @@ class Settings(Valued):
 FULL = Settings()
 QUICK = replace(
     FULL,
+    points=100,
     elements=(2.0,),
     element_pull_offs=(0.5, 2.0),
     table_rtol=1e-5,

@@ -10,7 +10,6 @@ import pytest
 
 from fem_adhesion import Scene
 from fem_adhesion.common.page import Figure, Section, write_page
-from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.report.page import Contents, page
 from fem_adhesion.report.walk import walk
@@ -26,16 +25,15 @@ END = 600_000
 
 
 @pytest.fixture(scope="module")
-def report(tmp_path_factory):
+def report(compared, tmp_path_factory):
     """A page whose half-space is another by far, so that its lines are told from those of the elements."""
-    cases = list(beside.run([Scene(1.0)], rtol=1e-2))
     curves = solve(Question(Scene(2.0), "both", 1e-3))
     walked = walk(curves, states=10)
     scaled = [
         replace(one, pressure=one.pressure * [[1.0], [0.5]], gap=one.gap * [[1.0], [0.7]]) for one in walked.stations
     ]
     walked = replace(walked, stations=tuple(scaled))
-    contents = Contents(cases, curves, walked, {})
+    contents = Contents(compared(1.0), curves, walked, {})
     file = tmp_path_factory.mktemp("report") / "report.html"
     file.write_text(page(contents))
     return file

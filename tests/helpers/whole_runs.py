@@ -12,6 +12,8 @@ import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from comparisons import PLACE
+
 ROOT = Path(__file__).parents[2]
 BIN = Path(sys.executable).parent
 
@@ -19,6 +21,10 @@ COMPARE = "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json 
 GREENWOOD = "fem-adhesion greenwood --out greenwood --quick"
 ON_ALL_CORES = "make compare"
 """The one run that takes every core: in others the cores are taken by the tests, and more processes only start up."""
+
+REPORT = "fem-adhesion report --out report.html"
+FROM_KEPT = (COMPARE, REPORT, "make compare")
+"""What compares: parts that one of them has computed are taken from there, see `comparisons`."""
 
 KEEPING = """
 import pickle, sys
@@ -34,6 +40,17 @@ study.compute = keeping
 sys.exit(cli.main())
 """
 """The program in whose place its result is kept beside its files: a study of a minute that tests look into."""
+
+
+COMPARING = """
+import sys
+from fem_adhesion import cli
+from fem_adhesion.crosscheck import scenes
+from comparisons import kept
+scenes._compared = kept
+sys.exit(cli.main())
+"""
+"""The program in whose place comparisons are kept."""
 
 
 @dataclass(frozen=True)
@@ -84,22 +101,28 @@ def _run(line, directory):
         environment["LOKY_MAX_CPU_COUNT"] = "1"
     environment = {name: value for name, value in environment.items() if not name.startswith(("PYTEST_", "MAKE"))}
     program, *arguments = shlex.split(line)
+    programs = BIN
+    if line in FROM_KEPT:
+        programs = directory.parents[1]
+        environment |= {PLACE: str(programs), "PYTHONPATH": os.pathsep.join(sys.path)}
+        (programs / "fem-adhesion").write_text(f"#!{sys.executable}\n{COMPARING}")
+        (programs / "fem-adhesion").chmod(0o700)
     if program == "make":
-        command, place = _target(arguments, directory), ROOT
+        command, place = _target(arguments, directory, programs), ROOT
     else:
         kept = KEEPING.format(file=str(kept_beside(directory)))
-        program = [sys.executable, "-c", kept] if line == GREENWOOD else [str(BIN / program)]
+        program = [sys.executable, "-c", kept] if line == GREENWOOD else [str(programs / program)]
         command, place = [*program, *arguments], directory
     done = subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True)
     return Run(line, done.returncode, done.stdout, done.stderr, str(directory))
 
 
-def _target(arguments, directory):
+def _target(arguments, directory, programs):
     """Make a target in the environment of the tests: stamps say that it is complete, so that nothing is installed."""
     for stamp in ("installed", "installed-dev"):
         (directory / stamp).touch()
     placed = [re.sub("^OUT=", f"OUT={directory}/", argument) for argument in arguments]
-    return ["make", "--no-print-directory", f"VENV={directory}", f"BIN={BIN}", *placed]
+    return ["make", "--no-print-directory", f"VENV={directory}", f"BIN={programs}", *placed]
 
 
 def tables_in(text):

@@ -43,7 +43,8 @@ def name_types(package):
 
 
 if __name__ == "__main__":
-    pdoc.render.configure(docformat="numpy", math=True, show_source="--quick" not in sys.argv)
+    whole = "--quick" not in sys.argv
+    pdoc.render.configure(docformat="numpy", math=True, show_source=whole, search=whole)
     directory = Path(sys.argv[1])
     pdoc.pdoc(*packages(), output_directory=directory)
     print(f"written: {directory / 'index.html'}")

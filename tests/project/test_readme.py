@@ -13,9 +13,10 @@ from xml.etree import ElementTree
 
 import pytest
 import test_make
+from comparisons import keep
 from PIL import Image
 from pyarrow import parquet
-from whole_runs import COMPARE, GREENWOOD, ROOT, tables_in
+from whole_runs import COMPARE, GREENWOOD, REPORT, ROOT, tables_in
 
 from fem_adhesion import cli
 
@@ -45,7 +46,7 @@ LINES = {
     "fem-adhesion sweep --tabor 0.1:10:7 --csv sweep.csv": "fem-adhesion sweep --tabor 0.1:10:7 --csv sweep.csv",
     "pip install 'fem-adhesion[view]'": INSTALL,
     "pip install '.[studies]'": INSTALL,
-    "fem-adhesion report --out report.html": "fem-adhesion report --out report.html",
+    REPORT: REPORT,
     "fem-adhesion speed --out speed --quick": "fem-adhesion speed --out speed --quick",
     "fem-adhesion greenwood --out greenwood": GREENWOOD,
     f"{ASSESS} --plot silica.png": f"{ASSESS} --plot silica.png",
@@ -153,12 +154,13 @@ OPENED = {
 }
 
 
-def test_the_report_takes_what_other_commands_left(whole, tmp_path, capsys):
+def test_the_report_takes_what_other_commands_left(whole, monkeypatch, tmp_path, capsys):
     lines = {shlex.split(run)[1]: run for run in RUN if "--out" in run} | {"hard": test_make.HARD}
     made = {name: whole(lines[name]) for name in ("speed", "hard", "greenwood", "finite-sphere")}
     given = [f"--{name}={run / name.replace('finite-', '')}" for name, run in made.items()]
     page = tmp_path / "report.html"
-    assert cli.main(["report", "--out", str(page), "--tabor", "0.5", "--rtol", "1e-2", "--walk", "0.5", *given]) == 0
+    keep(*whole.args, monkeypatch)
+    assert cli.main(["report", "--out", str(page), "--tabor", "0.5", "--walk", "0.05", *given]) == 0
     assert "verdict: agree" in capsys.readouterr().out
     text = page.read_text()
     for name in made:

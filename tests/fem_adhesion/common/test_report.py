@@ -24,10 +24,9 @@ from halfspace.laws import LENNARD_JONES
 
 
 @pytest.fixture(scope="module")
-def contents():
-    cases = list(beside.run([Scene(1.0)], rtol=1e-2))
+def contents(compared):
     curves = solve(Question(Scene(2.0), "both", 1e-3))
-    return Contents(cases, curves, walk(curves), {})
+    return Contents(compared(1.0), curves, walk(curves), {})
 
 
 @pytest.fixture(scope="module")

@@ -17,9 +17,7 @@ from rich.console import Console
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.page import Table
 from fem_adhesion.common.terminal import WIDE, Column, Fitted, Flow, make_console, page, prose
-from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck.comparison import Row, cells, crosscheck_tables
-from fem_adhesion.scene import Scene
 from halfspace.values import Estimate
 
 WIDTHS = [150, 60, 20]
@@ -103,9 +101,9 @@ def test_a_cell_is_not_broken_between_a_number_and_its_unit(width):
 
 
 @pytest.fixture(scope="module")
-def case():
+def case(compared):
     """A case with all values distinct and every verdict."""
-    (solved,) = beside.run([Scene(0.5)], rtol=1e-2)
+    (solved,) = compared(0.5)
     rows = (
         Row("first load", "R dgamma", Estimate(-1.2345678, 1e-7), Estimate(-1.2345679, 2e-7), 1.1e-7, 6.6e-5),
         Row("second load", "J", Estimate(2.3456789, 3e-7), Estimate(2.3999999, 4e-7), 5.5e-2, 7.7e-5),
