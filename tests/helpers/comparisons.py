@@ -7,7 +7,6 @@ import fcntl
 import hashlib
 import os
 import pickle
-from functools import partial
 from pathlib import Path
 
 from fem_adhesion.crosscheck import scenes
