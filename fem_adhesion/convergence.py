@@ -151,7 +151,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     by a step does so at one place of a cell, for both degrees: numbers erred by up to fifty times their estimate.
     """
     degree = degree_for(rtol) + level
-    how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
+    how, below, coarser, curve = (with_rings(d) for d in (degree, degree - 1, degree - 2, CURVE_DEGREE + level))
     twin = replace(below, finest=GRIDS.twin[0] * below.finest, growth=GRIDS.twin[1] * below.growth)
     body, step = scene.body, BY_STEP if scene.scales.step_gap else 1.0
     return Rung(
@@ -159,7 +159,14 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
         (_standing(scene, how, to_load),),
         asdict(how) | {"curve_degree": curve.degree},
         _standing(scene, twin, to_load) if level and (body.other_cells or scene.scales.step_gap) else None,
-        ErrorRule(body.left * step * REMAINING, along=True, steps=scene.scales.steps, beyond=scene.tension_beyond),
+        _standing(scene, coarser, to_load) if level else None,
+        ErrorRule(
+            body.left * step * REMAINING,
+            parts=(GRIDS.before, 1.0),
+            along=True,
+            steps=scene.scales.steps,
+            beyond=scene.tension_beyond,
+        ),
     )
 
 

@@ -112,7 +112,7 @@ class Stages(Valued):
         stages = tuple(Raising(one, partial(Stages.windows, self, one.how.degree)) for one in bodies)
         left = REMAINING / self.scene.scales.gradual
         settings = {"linear": linear, **asdict(bodies[-1].how)}
-        return Rung(curve, stages, settings, rule=ErrorRule(left, along=True, last=self.settings.other_cells))
+        return Rung(curve, stages, settings, rule=ErrorRule(left, parts=(1.0, self.settings.other_cells), along=True))
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -15,7 +15,6 @@ from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
-from halfspace.equilibrium.events import REMAINING, ErrorRule
 from halfspace.errors import InputError
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
@@ -32,7 +31,7 @@ class GridSettings:
     extent: float = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good
     most_nodes: int = 16  # of a panel
     tip: float = 1.5  # times as fast as elsewhere; with 2 or 3 two of 427 numbers were outside their estimates
-    one_node: float = 2.0  # of the change by one node more, what may be left: mostly less
+    before: float = 0.2  # of the change before that, what may be left: without it 2.45 errors, at half of it 1.5
     most_widths: int = 60  # of a spike of tension that are resolved at once
     twin: tuple[float, ...] = (
         0.75,
@@ -74,9 +73,10 @@ def resolution_for(scales: Scales, rtol: float, level: int = 0) -> Resolution:
     return Resolution(min(nodes, GRIDS.most_nodes), finest=0.6, growth=3.0, extent=GRIDS.extent * scales.widened)
 
 
-def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution, Resolution]:
-    """Resolution of a level, and that of a twin as fine as the level below, with other cells."""
-    return resolution_for(scales, rtol, level), twin_of(resolution_for(scales, rtol, max(level - 1, 0)))
+def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution, ...]:
+    """Resolution of a level, that of the level below, and one with a node less."""
+    here, below = (resolution_for(scales, rtol, n) for n in (level, max(level - 1, 0)))
+    return here, below, replace(below, nodes=below.nodes - 1)
 
 
 def twin_of(resolution: Resolution) -> Resolution:
@@ -88,19 +88,6 @@ def twin_of(resolution: Resolution) -> Resolution:
         growth=growth * resolution.growth,
         extent=extent * resolution.extent,
     )
-
-
-def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doubt: int = 1) -> ErrorRule:
-    """How errors are told from the change by one node more, or by two and more, and so many times as large.
-
-    Where derivatives of profile or law leap inside a cell an error falls as a power of the nodes: a pair more leaves as
-    much there as elsewhere one. So it does on a level for which there are not nodes enough, of the resolutions of that
-    and of the one below: it has been climbed to since errors fall slowly. There the doubt, which is of a change by a
-    level's own nodes, counts as far as it exceeds that: both at once are 13 times the error on 0.01 beta.
-    """
-    most, fewer = (resolution.nodes for resolution in resolutions)
-    remaining = doubt * (GRIDS.one_node if level == 1 or scales.pieced else REMAINING)
-    return ErrorRule(remaining if most - fewer == level else max(remaining, GRIDS.one_node), steps=scales.steps)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

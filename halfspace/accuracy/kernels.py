@@ -20,8 +20,6 @@ from halfspace.accuracy.grids import (
     endless,
     half_space_charts,
     resolutions_for,
-    rule_for,
-    twin_of,
     under_sphere,
 )
 from halfspace.accuracy.refinement import MOST_RUNGS
@@ -30,7 +28,6 @@ from halfspace.accuracy.standing import sized
 from halfspace.elastic import compliance
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.extrapolated import divided, extrapolated
-from halfspace.equilibrium.events import ErrorRule
 from halfspace.errors import InputError
 from halfspace.limits import require_between, require_one_of
 from halfspace.scales import Scales
@@ -46,15 +43,16 @@ BEYOND = 8  # nodes of the infinite cell; with 12 no digit of 1e-5 is another
 class Kernel:
     """A representation of the pressure.
 
-    `make` makes the operator of the half-space. `resolutions` gives, for a relative accuracy, that of a level and that
-    of a twin of the level below, and `rule` how errors follow from both. `least` is the smallest accuracy that is
+    `make` makes the operator of the half-space. `resolutions` gives, for a relative accuracy, that of a level, that of
+    the level below and, if the change from it tells anything, a coarser one. Of the last change `left` may be left as
+    error. `least` is the smallest accuracy that is
     served, and `most_rungs` the number of levels above the lowest.
     """
 
     name: str
     make: MakeOperator
-    resolutions: Callable[[Scales, float, int], tuple[Resolution, Resolution]]
-    rule: Callable[[Scales, tuple[Resolution, Resolution], int, int], ErrorRule]
+    resolutions: Callable[[Scales, float, int], tuple[Resolution, ...]]
+    left: float
     least: float
     most_rungs: int
 
@@ -71,24 +69,17 @@ def _straight(kind: str, parts: int, intervals: int, reach: float, cells: Array)
     return compliance.to_infinity(inner, BEYOND, reach)
 
 
-def _finer(scales: Scales, rtol: float, level: int) -> tuple[Resolution, Resolution]:
+def _finer(scales: Scales, rtol: float, level: int) -> tuple[Resolution, ...]:
     """Resolutions with twice as many intervals from level to level."""
     least = max(FEWEST, math.ceil((PART / rtol) ** 0.25))
-    here, below = (
-        Resolution(least * 2**k, 0.6, 3.0, GRIDS.extent * scales.widened) for k in (level, max(level - 1, 0))
-    )
-    return here, twin_of(below)
-
-
-def _falling(scales: Scales, *_: object) -> ErrorRule:
-    """How errors are told from the change by a level: where derivatives leap they fall as the square alone."""
-    return ErrorRule(GRIDS.one_node if scales.pieced else CROSSING)
+    levels = (level, max(level - 1, 0))
+    return tuple(Resolution(least * 2**k, 0.6, 3.0, GRIDS.extent * scales.widened) for k in levels)
 
 
 KERNELS: Mapping[str, Kernel] = {
-    "panels": Kernel("panels", endless, resolutions_for, rule_for, 1e-9, MOST_RUNGS),
-    "triangles": Kernel("triangles", partial(_straight, "triangles", 2), _finer, _falling, 1e-6, 2),
-    "bands": Kernel("bands", partial(_straight, "bands", 3), _finer, _falling, 1e-6, 2),
+    "panels": Kernel("panels", endless, resolutions_for, 1.0, 1e-9, MOST_RUNGS),
+    "triangles": Kernel("triangles", partial(_straight, "triangles", 2), _finer, CROSSING, 1e-6, 2),
+    "bands": Kernel("bands", partial(_straight, "bands", 3), _finer, CROSSING, 1e-6, 2),
 }
 
 

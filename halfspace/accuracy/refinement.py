@@ -78,7 +78,8 @@ def _climb_from(
     jumps = tuple(state[name] for name in FOLDS if name in state)
     further = FurtherFolds(segments if folds else (), jumps, before, higher)
     lowest_stage = below.stages[-1] if below.stages else Charted(tuple(charts))
-    ladder = Ladder((lowest_stage, *higher.stages), higher.twin, higher.rule)
+    coarser = (higher.coarser,) if higher.coarser else ()
+    ladder = Ladder((*coarser, lowest_stage, *higher.stages), higher.twin, higher.rule)
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,

@@ -55,33 +55,41 @@ class Rung(Valued):
     every event is solved for; each differs from the one before in one respect, the last, which the settings tell, is
     the finest. The changes add up to the error, by the rule. On the lowest rung they only prepare, and there may be
     none. The twin is as fine as the rung below, with other cells: it errs as much, but not by the same accident of
-    sign.
+    sign. The coarser stage differs from the rung below as that does from this one: two neighbours may err alike.
     """
 
     curve: Callable[[], Iterable[Chart]]
     stages: tuple[Stage, ...]
     settings: Mapping[str, object]
     twin: Stage | None = None
+    coarser: Stage | None = None
     rule: ErrorRule = USUAL
 
     def chains(self, state: State) -> list[list[State]]:
-        """Chains of states from the rung below, and from its twin, to the last stage."""
+        """Chains of states from a coarser stage and the rung below, and from its twin, to the last stage."""
         found = {name: _demanded(name, self.chains_of(event)) for name, event in state.items()}
-        lengths = [len(self.stages) + 1, *([2] if self.twin else [])]
+        lengths = [bool(self.coarser) + 1 + len(self.stages), *([2] if self.twin else [])]
         return [[{name: found[name][i][j] for name in found} for j in range(n)] for i, n in enumerate(lengths)]
 
     def chains_of(self, event: Located) -> list[list[Located]] | Unsolved:
         """Those of one event."""
-        chain = [event]
+        chain, beside = [event], list[list[Located]]()
         for stage in self.stages:
             found = met_again(stage, chain[-1])
             if not found:
                 return found
             chain.append(found)
-        if not self.twin:
-            return [chain]
-        other = met_again(self.twin, chain[-1])
-        return [chain, [other, chain[-1]]] if other else other
+        if self.coarser:
+            found = met_again(self.coarser, event)
+            if not found:
+                return found
+            chain.insert(0, found)
+        if self.twin:
+            found = met_again(self.twin, chain[-1])
+            if not found:
+                return found
+            beside.append([found, chain[-1]])
+        return [chain, *beside]
 
     def estimates(self, chains: Sequence[Sequence[State]]) -> dict[str, Event]:
         """Events of the last state, with their changes along the chains as errors."""

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 
-from halfspace.accuracy.grids import Resolution
+from halfspace.accuracy.grids import GRIDS, Resolution, twin_of
 from halfspace.accuracy.kernels import Kernel, require_kernel
 from halfspace.accuracy.layered import DOUBT, layered
 from halfspace.accuracy.refinement import climb
@@ -17,6 +17,7 @@ from halfspace.accuracy.stages import Discretised, Rung
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import ErrorRule
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
@@ -85,9 +86,10 @@ def _rung(scales: Scales, rtol: float, how: Kernel, discretise: Discretise, doub
 
     An error may be `doubt` times as large as by the change alone.
     """
-    resolution, below = how.resolutions(scales, rtol, level)
+    resolution, below, *coarser = how.resolutions(scales, rtol, level)
     (curve, stage), settings = discretise(resolution, 0), {"kernel": how.name, **asdict(resolution)}
     if not level:
         return Rung(curve, (), settings)
-    rule = how.rule(scales, (resolution, below), level, doubt)
-    return Rung(curve, (stage,), settings, discretise(below, 1)[1], rule)
+    twin, before = discretise(twin_of(below), 1)[1], discretise(coarser[0], 1)[1] if coarser else None
+    rule = ErrorRule(how.left * doubt, (GRIDS.before, 1.0), steps=scales.steps)
+    return Rung(curve, (stage,), settings, twin, before, rule)

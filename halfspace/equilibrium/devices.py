@@ -121,15 +121,14 @@ class JumpStates:
 
 @dataclass(frozen=True)
 class StagedJump:
-    """A jump on the finest discretisation, and on those from which it changes by what errors are told from."""
+    """A jump on chains of discretisations, by whose changes errors are told, all of which end with the finest."""
 
-    fine: JumpStates
-    others: tuple[JumpStates, ...]
+    chains: list[list[JumpStates]]
 
     @property
-    def chains(self) -> list[list[JumpStates]]:
-        """From each of the others to the finest."""
-        return [[other, self.fine] for other in self.others]
+    def fine(self) -> JumpStates:
+        """The jump on the finest discretisation."""
+        return self.chains[0][-1]
 
     def energy(self, rule: ErrorRule, compliance: float = 0.0) -> Estimate:
         """Energy set free with an apparatus of a compliance 1/k."""
@@ -322,8 +321,7 @@ def _staged(rough: JumpStates, path: EquilibriumPath, compliance: float) -> Stag
     def again(stage: Stage, states: JumpStates) -> JumpStates | Unsolved:
         return _refined(states, stage, compliance)
 
-    chain, *twin = required(path.ladder.chains(required(again(path.finest, rough)), again))
-    return StagedJump(chain[-1], (*chain[:-1], *(pair[0] for pair in twin)))
+    return StagedJump(required(path.ladder.chains(required(again(path.finest, rough)), again)))
 
 
 def _jump(staged: StagedJump, path: EquilibriumPath, compliance: float) -> Jump:

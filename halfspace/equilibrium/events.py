@@ -144,24 +144,26 @@ class ErrorRule:
     """How errors are told from the changes along chains of discretisations, all of which end with the best.
 
     `remaining` is the part of the changes that may be left as error, above 1 where it falls slowly from one to the
-    next, and of the last change `last` times as much, where that is from other cells with no twin beside. `along` says
-    whether the shift of an event along the path counts, see `estimate_event`: on grids that follow the contact, whose
-    radius tells it precisely, and where there is no twin to guard against chance. `steps` says that it does for other
-    numbers than those at a point alone, as under a law that ends by a step: an integral over a cell in which that
-    stands errs this way or that by its place, so that a number of several grids may agree by accident. `beyond` is the
-    tension in R dgamma that acts beyond the cells of all discretisations, so that no change tells of it.
+    next. `parts` says how much each of the last changes along a chain counts, in the place of 1: less than 1 before the
+    last, where each is mostly far larger than the next, more than 1 where a change is from other cells with no twin
+    beside. `along` says whether the shift of an event along the path counts, see `estimate_event`: on grids that follow
+    the contact, whose radius tells it precisely, and where there is no twin to guard against chance. `steps` says that
+    it does for other numbers than those at a point alone, as under a law that ends by a step: an integral over a cell
+    in which that stands errs this way or that by its place, so that a number of several grids may agree by accident.
+    `beyond` is the tension in R dgamma that acts beyond the cells of all discretisations, so that no change tells of
+    it.
     """
 
     remaining: float = REMAINING
+    parts: tuple[float, ...] = ()
     along: bool = False
-    last: float = 1.0
     steps: bool = False
     beyond: float = 0.0
 
     def change(self, chain: Sequence[Array | float]) -> Array:
-        """Sum of the changes along a chain of two values or more, arrays (...) or numbers, the last `last` times."""
+        """Sum of the changes along a chain of two values or more, arrays (...) or numbers, each by its part."""
         changes = np.abs(np.diff(np.array(chain), axis=0))
-        return np.asarray(changes.sum(axis=0) + (self.last - 1) * changes[-1])
+        return np.asarray(np.tensordot(self.parts[-len(changes) :] or np.ones(len(changes)), changes, 1))
 
     def estimate(
         self, chains: Sequence[Sequence[float]], sizes: float, more: Sequence[Sequence[float]] = ()

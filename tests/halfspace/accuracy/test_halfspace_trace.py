@@ -176,7 +176,7 @@ def test_what_loads_slowly_is_loaded_if_needed(code, unneeded):
         (1, LENNARD_JONES, 35, 105),
         (50, LENNARD_JONES, 75, 210),
         (300, LENNARD_JONES, 95, 240),
-        (1, Dugdale(0.1), 55, 155),
+        (1, Dugdale(0.1), 55, 180),
     ],
 )
 def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, points, factorisations):

@@ -54,18 +54,12 @@ def test_events_are_right_within_their_estimates_and_as_accurate_as_asked(tabor,
         assert max(estimates) < 100 * max(errors)
 
 
-GAP_OUTSIDE = pytest.mark.xfail(
-    reason="the central gap under no load lies 1.02 estimates off since steps have no grid apart"
-)
-
-
 @pytest.mark.parametrize(
     ("law", "profile", "kernel"),
     [
         *itertools.product([Morse(3.0)], [PARABOLOID], STRAIGHT),
         *itertools.product([LENNARD_JONES], [Power(4)], STRAIGHT),
-        (Dugdale(0.1), PARABOLOID, "triangles"),
-        pytest.param(Dugdale(0.1), PARABOLOID, "bands", marks=GAP_OUTSIDE),
+        *itertools.product([Dugdale(0.1)], [PARABOLOID], STRAIGHT),
     ],
     ids=str,
 )

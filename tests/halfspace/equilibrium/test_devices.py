@@ -134,7 +134,7 @@ def test_critical_stiffness_tends_to_bradleys_steepest_fall():
 @pytest.mark.parametrize("rtol", [1e-2, 1e-4])
 @pytest.mark.parametrize(("tabor", "stiffness"), [(0.75, 0.5), (2.0, math.inf), (8.0, 3.0)])
 def test_the_error_of_an_energy_is_by_its_change_over_grids(tabor, stiffness, rtol):
-    """Or from a twin, if that is more; and holds the truth, as another curve gives it that is four decades tighter."""
+    """With a part of the change before, or from a twin, if that is more; it holds the truth of a curve four decades tighter."""
     path, truth = halfspace.trace(tabor, rtol=rtol), cycle(halfspace.trace(tabor, rtol=1e-4 * rtol), stiffness)
     found, rough = cycle(path, stiffness), jumps(path.segments, 1 / stiffness)
     for jump, before, known in zip(
@@ -142,7 +142,7 @@ def test_the_error_of_an_energy_is_by_its_change_over_grids(tabor, stiffness, rt
     ):
         left = max(path.ladder.rule.remaining, 1) * abs(jump.energy.value - before.energy(1 / stiffness))
         rounding = 2e-11 * (1 + jump.energy.value)
-        assert left - rounding <= jump.energy.error <= 3 * left + rounding
+        assert left - rounding <= jump.energy.error <= 10 * left + rounding
         assert abs(jump.energy.value - known.energy.value) <= jump.energy.error
     assert found.energy_lost.value == found.jump_on.energy.value + found.jump_off.energy.value
     assert found.energy_lost.error == found.jump_on.energy.error + found.jump_off.energy.error
