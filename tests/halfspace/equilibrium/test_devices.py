@@ -134,7 +134,7 @@ def test_critical_stiffness_tends_to_bradleys_steepest_fall():
 @pytest.mark.parametrize("rtol", [1e-2, 1e-4])
 @pytest.mark.parametrize(("tabor", "stiffness"), [(0.75, 0.5), (2.0, math.inf), (8.0, 3.0)])
 def test_the_error_of_an_energy_is_by_its_change_over_grids(tabor, stiffness, rtol):
-    """With a part of the change before, or from a twin, if that is more; it holds the truth of a curve four decades tighter."""
+    """Or from a twin, or a coarser grid, if that is more; it holds the truth of a tighter curve."""
     path, truth = halfspace.trace(tabor, rtol=rtol), cycle(halfspace.trace(tabor, rtol=1e-4 * rtol), stiffness)
     found, rough = cycle(path, stiffness), jumps(path.segments, 1 / stiffness)
     for jump, before, known in zip(
