@@ -201,7 +201,7 @@ def test_an_interface_is_drawn_and_written():
 
 def test_compare_agrees_on_the_command_line(tmp_path):
     record, body = tmp_path / "record.json", "layers:0.4,0.3/0.5,0.45,0.2/sliding"
-    assert main(["compare", "--tabor", "1", "--body", body, "--rtol", "1e-4", "--json", str(record)]) == 0
+    assert main(["compare", "--tabor", "1", "--body", body, "--rtol", "1e-3", "--json", str(record)]) == 0
     rows = json.loads(record.read_text())["cases"][0]["comparison"]
     between = {tuple(row["between"]) for row in rows}
     assert {("half-space", "finite elements"), ("weak form", "finite elements")} <= between

@@ -32,10 +32,9 @@ def test_a_meshed_hemisphere_agrees_with_ours():
         assert a.approach_error < 1e-3
 
 
-@pytest.mark.parametrize("name", ["hemisphere", "tip"])
-def test_traction_of_the_stress_is_left_out_at_the_corner_alone(name):
+def test_traction_of_the_stress_is_left_out_at_the_corner_alone():
     """The last facet ends where the grip begins; the same mesh that slides has all."""
-    scenes = [meshed(name, 20.0, grip=grip) for grip in ("bonded", "sliding")]
+    scenes = [meshed("hemisphere", 20.0, grip=grip) for grip in ("bonded", "sliding")]
     for scene in scenes:
         path = fem_adhesion.trace(scene, rtol=1e-2)
         for state in fields.states_along(scene, path, points=0):

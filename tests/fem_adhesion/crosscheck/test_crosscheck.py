@@ -27,15 +27,14 @@ def _rejecting(case):
     return {row.quantity: row.verdict for row in case.rows if row.verdict != "agree"}
 
 
-@pytest.mark.parametrize(("tabor", "poisson", "limit"), [(0.5, 0.45, 1e-5), (5, 0.0, 5e-5)])
-def test_the_solvers_agree(tabor, poisson, limit):
-    """At a Poisson's ratio of 0.3 ``make compare`` shows it; see `test_make`."""
-    case = crosscheck.compare(Scene(tabor=tabor, body=HalfSpace(poisson=poisson)), rtol=1e-5, before=())
+def test_the_solvers_agree():
+    """At a Poisson's ratio of 0.3 ``make compare`` shows it, see `test_make`, at 0.45 the command of the README."""
+    case = crosscheck.compare(Scene(tabor=0.5, body=HalfSpace(poisson=0.0)), rtol=1e-5, before=())
     assert _rejecting(case) == {}
     assert case.verdict == "agree"
     for row in case.rows:
         if row.quantity in ("pull_off load", "jump_on approach", "jump_off approach"):
-            assert row.difference <= limit * abs(row.first.value)
+            assert row.difference <= 1e-5 * abs(row.first.value)
 
 
 def _no_hoop_strain(monkeypatch):

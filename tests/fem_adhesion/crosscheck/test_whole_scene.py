@@ -189,6 +189,4 @@ def test_a_bonded_pair_is_not_held_against_a_sliding_one():
         counter=fem_adhesion.Hemisphere(radius_ratio=40.0, grip="bonded"),
         share=0.5,
     )
-    case = fem_adhesion.compare(scene, rtol=1e-3)
-    assert list(case.solutions) == ["finite elements"]
-    assert case.verdict == "agree"
+    assert reference_for(scene) is None
