@@ -1,4 +1,4 @@
-"""Make the atlas's file from `halfspace.trace`, or check it: ``python -m halfspace.atlas``, a minute or two."""
+"""Make the atlas's files from `halfspace.trace`, or check it: ``python -m halfspace.atlas``, some minutes."""
 
 from __future__ import annotations
 
@@ -7,32 +7,42 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from halfspace.atlas import build
+import numpy as np
+
+from halfspace.atlas import build, build_curves
+from halfspace.atlas.curves import curve
 from halfspace.atlas.events import birth_of_folds
-from halfspace.atlas.series import stored
+from halfspace.atlas.series import series_of, stored
 from halfspace.values import Array
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Make the file, or check it at random Tabor parameters; 1 if a number is off by more than both errors."""
+    """Make the files, or check them at random Tabor parameters; 1 if a number is off by more than both errors."""
     parser = argparse.ArgumentParser(prog="python -m halfspace.atlas", description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path(__file__).with_name("atlas.json"), help="file that is made")
+    parser.add_argument("--out", type=Path, default=Path(__file__).parent, help="directory of the files made")
     parser.add_argument("--nodes", type=Path, default=Path("build/atlas"), help="directory of the nodes solved so far")
-    parser.add_argument("--check", type=int, metavar="N", help="compare the file with the source at N Tabor parameters")
+    parser.add_argument("--check", type=int, metavar="N", help="compare them with the source at N Tabor parameters")
     parser.add_argument("--seed", type=int, default=1, help="of the Tabor parameters of --check")
     given = parser.parse_args(arguments)
-    given.nodes.mkdir(parents=True, exist_ok=True)
-    node = build.Store(given.nodes / f"{build.digest()}.jsonl", _told)
+    directory = given.nodes / build.digest()
+    directory.mkdir(parents=True, exist_ok=True)
+    node = build.events_solved(directory, _told)
     if given.check:
         return _check(node, build.sample(given.check, given.seed, birth_of_folds().value))
     content = build.built(node)
-    given.out.write_text(json.dumps(content, separators=(",", ":")).replace('],"', '],\n"') + "\n", encoding="utf-8")
-    print(f"\n{given.out}: {given.out.stat().st_size / 1000:.0f} kB")
+    gap = series_of(content["series"]["zero_load.central_gap"])
+    curves = build_curves.built(build_curves.states_solved(directory, gap, _told))
+    text = json.dumps(content, separators=(",", ":")).replace('],"', '],\n"')
+    (given.out / "atlas.json").write_text(text + "\n", encoding="utf-8")
+    np.savez_compressed(given.out / "curves.npz", allow_pickle=False, **curves)
+    for name in ("atlas.json", "curves.npz"):
+        print(f"\n{given.out / name}: {(given.out / name).stat().st_size / 1000:.0f} kB", end="")
+    print()
     return 0
 
 
-def _told(count: int, tabor: float) -> None:
-    print(f"\r{count} nodes, the last at tabor {tabor:.4g}   ", end="", flush=True)
+def _told(progress: str) -> None:
+    print(f"\r{progress}   ", end="", flush=True)
 
 
 def _check(node: build.Node, tabors: Array) -> int:
@@ -45,7 +55,10 @@ def _check(node: build.Node, tabors: Array) -> int:
     for name, found in rows.items():
         relative, share = max(found), max(found, key=lambda row: row[1])
         print(f"{name:36}{relative[0]:10.1e}{relative[2]:12.6g}{share[1]:11.2f}{share[2]:12.6g}")
-    return int(any(share > 1 for found in rows.values() for _, share, _ in found))
+    few = tabors[:: max(1, len(tabors) // 20)].tolist()
+    off, share = map(max, zip(*(build_curves.deviations(tabor, curve(tabor)) for tabor in few), strict=True))
+    print(f"{'curves at ' + str(len(few)) + ' of them':36}{off:10.1e}{'':12}{share:11.2f}")
+    return int(share > 1 or any(share > 1 for found in rows.values() for _, share, _ in found))
 
 
 if __name__ == "__main__":

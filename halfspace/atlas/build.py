@@ -9,17 +9,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from halfspace.accuracy.trace import trace
-from halfspace.atlas.series import LEAST, MOST, Series, series_of
+from halfspace.atlas.series import EDGE, LEAST, MOST, Series, series_of
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import approach_scale
-from halfspace.laws import LENNARD_JONES
 from halfspace.roots import root
 from halfspace.values import Array, Estimate
 
@@ -44,6 +43,7 @@ UNBORN = Estimate(1.0, 0.0)  # stands for the birth of a number that all curves 
 
 Numbers = Mapping[str, Estimate]
 Node = Callable[[float], Numbers]
+T = TypeVar("T")
 Entry = dict[str, Any]
 
 
@@ -62,26 +62,37 @@ def solved(tabor: float) -> dict[str, Estimate]:
     return {name: number for name, number in found.items() if not math.isnan(number.value)}
 
 
-class Store:
-    """Nodes solved so far, in a file of one line each, from which an interrupted build goes on."""
+class Store(Generic[T]):
+    """What was solved for at some Tabor parameters, one line each in a file, so that an interrupted build goes on.
 
-    def __init__(self, file: Path, told: Callable[[int, float], None]) -> None:
-        self.file, self.told = file, told
-        self.nodes: dict[float, Numbers] = {}
-        if file.exists():
-            for line in file.read_text().splitlines():
-                tabor, numbers = json.loads(line)
-                self.nodes[tabor] = {name: Estimate(*number) for name, number in numbers.items()}
+    `solve` gives what is stored by name; `read` makes it of the numbers in the file.
+    """
 
-    def __call__(self, tabor: float) -> Numbers:
-        """Numbers of a Tabor parameter."""
-        if tabor not in self.nodes:
-            self.nodes[tabor] = solved(tabor)
-            numbers = {name: (number.value, number.error) for name, number in self.nodes[tabor].items()}
+    def __init__(
+        self, file: Path, solve: Callable[[float], dict[str, T]], read: Callable[[Any], T], told: Callable[[str], None]
+    ) -> None:
+        self.file, self.solve, self.told = file, solve, told
+        lines = map(json.loads, file.read_text().splitlines() if file.exists() else ())
+        self.known = {tabor: {name: read(numbers) for name, numbers in found.items()} for tabor, found in lines}
+
+    def __call__(self, tabor: float) -> dict[str, T]:
+        """What there is at a Tabor parameter, solved for unless it is known."""
+        if tabor not in self.known:
+            self.known[tabor] = self.solve(tabor)
             with self.file.open("a") as lines:
-                lines.write(json.dumps([tabor, numbers]) + "\n")
-            self.told(len(self.nodes), tabor)
-        return self.nodes[tabor]
+                lines.write(json.dumps([tabor, self.known[tabor]], default=_plain) + "\n")
+            self.told(f"{self.file.stem}: {len(self.known)}, the last at tabor {tabor:.4g}")
+        return self.known[tabor]
+
+
+def _plain(value: Any) -> Any:
+    """Numbers of an estimate or an array."""
+    return value.tolist() if isinstance(value, np.ndarray) else [value.value, value.error]
+
+
+def events_solved(directory: Path, told: Callable[[str], None]) -> Store[Estimate]:
+    """Store of the events of Tabor parameters."""
+    return Store(directory / "events.jsonl", solved, lambda pair: Estimate(*pair), told)
 
 
 def digest() -> str:
@@ -176,7 +187,7 @@ def radius(node: Node, name: str, birth: Estimate, gap: Series) -> Entry:
     """Entry of the square of a contact radius at an end of a jump, from where the central gap is that of the edge."""
 
     def closed(x: float) -> float:
-        return LENNARD_JONES.edge_gap - float(gap(np.array([birth.value * math.exp(x**2)]))[0][0])
+        return EDGE - float(gap(np.array([birth.value * math.exp(x**2)]))[0][0])
 
     begin = root(closed, 0.0, FOLDED[0], "the birth of a contact; take more nodes", xtol=1e-15)
     ends = [begin, *FOLDED, math.sqrt(math.log(MOST / birth.value))]
@@ -210,10 +221,10 @@ def piece(at: Callable[[float], Estimate], low: float, high: float, power: int =
 
 
 def fitted(values: ArrayLike) -> Array:
-    """Chebyshev coefficients of the polynomial through values at the Chebyshev points of the first kind."""
+    """Chebyshev coefficients of the polynomial through values at the Chebyshev points, along the first axis."""
     f = np.asarray(values)
-    weights = np.where(np.arange(f.size), 2, 1) / f.size
-    return np.asarray(weights * (chebyshev.chebvander(chebyshev.chebpts1(f.size), f.size - 1).T @ f))
+    weights = np.where(np.arange(len(f)), 2, 1) / len(f)
+    return np.tensordot(weights[:, None] * chebyshev.chebvander(chebyshev.chebpts1(len(f)), len(f) - 1).T, f, axes=1)
 
 
 class Deviation(NamedTuple):

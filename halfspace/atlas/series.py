@@ -15,6 +15,7 @@ from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
 LEAST, MOST = 0.01, 300.0  # Tabor parameters that the atlas covers
+EDGE = 3 ** (1 / 6) - 1  # central gap in eps where a contact begins: that of the largest tension of the 3-9 law
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -57,13 +58,13 @@ class Series(Valued):
         t = (x - self.ends[piece]) / half[piece] - 1
         t[x < self.ends[0]] = np.nan
         with np.errstate(divide="ignore", invalid="ignore"):
-            value = _sum(self.coefficients, piece, t) ** (1 / self.power)
+            value = summed(self.coefficients, piece, t) ** (1 / self.power)
             scale = self.power * value ** (self.power - 1)  # of a change of the series to one of the number
             error = self.errors[piece] + (self.birth_errors[piece] / x if self.is_born else 0 * t)
             if not derivative:
                 return value, error / scale
             rate = 1 / (half[piece] * tabor * (2 * x if self.is_born else 1.0)) / scale
-            slope = _sum(self._slopes, piece, t)
+            slope = summed(self._slopes, piece, t)
             # A polynomial of degree n within 1 has a slope within n/sqrt(1 - t^2) (Bernstein) and n^2 (Markov).
             n = len(self.coefficients) - 1
             steepest = n / np.maximum(np.sqrt(np.maximum(1 - t**2, 0)), 1 / n)
@@ -81,8 +82,8 @@ class Series(Valued):
         return np.asarray(np.polynomial.chebyshev.chebder(self.coefficients))
 
 
-def _sum(coefficients: Array, piece: Index, t: Array) -> Array:
-    """Sum of the series of a piece at places t, by Clenshaw's recurrence."""
+def summed(coefficients: Array, piece: Index, t: Array) -> Array:
+    """Sum of the series of a piece at places t; coefficients (terms, pieces). By Clenshaw's recurrence."""
     b1 = b2 = np.zeros_like(t)
     for c in coefficients[:0:-1]:
         b1, b2 = c[piece] + 2 * t * b1 - b2, b1

@@ -19,6 +19,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from halfspace.branches import branch_names, chosen_branch
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Stage, placed, settled, transfer
 from halfspace.equilibrium.conditions import (
@@ -191,7 +192,9 @@ class FinestCurve(Valued):
             branches.append([*begin, *points[first:place], end])
             begin, first = [end], max(first, place)
         branches.append([*begin, *points[first:]])
-        return dict(zip(_names(len(branches)), (measured_runs(one, self.metric) for one in branches), strict=True))
+        return dict(
+            zip(branch_names(len(branches)), (measured_runs(one, self.metric) for one in branches), strict=True)
+        )
 
     def _place(self, points: Sequence[tuple[Traceable, Point]], turn: Located) -> int:
         """Number of the point before which a turn lies."""
@@ -271,25 +274,7 @@ class FinestCurve(Valued):
 
     def _chosen(self, coordinate: str, value: float, branch: str | None) -> str:
         """Name of the branch that is asked for, if it has the value, or of the only one that has."""
-        ranges, unit = self.branches(coordinate), COORDINATES[coordinate][1]
-        if branch and branch not in ranges and not (branch in ENDS and WHOLE in ranges):
-            raise InputError(
-                f'branch = "{branch}" is none of {", ".join(ranges)} of the {coordinate}; take one of these'
-            )
-        names = [branch] if branch in ranges else list(ranges)
-        having = [name for name in names if ranges[name][0] <= value <= ranges[name][1]]
-        if len(having) > 1:
-            raise InputError(
-                f"{coordinate} = {value:g} {unit} is met on {', '.join(having)}, limit: one; name it by branch"
-            )
-        if not having:
-            low, high = min(ranges[name][0] for name in names), max(ranges[name][1] for name in names)
-            where = f"on {names[0]}" if len(names) == 1 else "on this curve"
-            raise InputError(
-                f"{coordinate} = {value:g} is outside {low:.6g} <= {coordinate} <= {high:.6g} {unit} {where}; take one "
-                "inside"
-            )
-        return having[0]
+        return chosen_branch(self.branches(coordinate), coordinate, COORDINATES[coordinate][1], value, branch)
 
     def _errors(self, problem: Traceable, point: Point) -> Array:
         """Errors of the observables in the plane across the path, (4,); nan where there is nothing to compare with."""
@@ -337,18 +322,6 @@ def shift(change: float, rate: float, bend: float) -> float:
     """
     inside = rate**2 - 2 * bend * change
     return float(2 * change / (rate + np.sqrt(inside)) if inside > 0 else np.sqrt(2 * change / bend))
-
-
-ENDS = ("separated", "contact")
-WHOLE = "whole"
-
-
-def _names(count: int) -> Sequence[str]:
-    """Names of branches in order: of one that is the whole curve, of two that meet, or with unstable ones between."""
-    if count < 3:
-        return ENDS if count == 2 else (WHOLE,)
-    inner = ["unstable"] if count == 3 else [f"unstable {i + 1}" for i in range(count - 2)]
-    return (ENDS[0], *inner, ENDS[1])
 
 
 def require_coordinate(name: str) -> str:
