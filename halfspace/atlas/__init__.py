@@ -1,4 +1,8 @@
-"""Atlas: all that depends on the Tabor parameter alone, for a paraboloid on a half-space under the 3-9 law."""
+"""Atlas: all that depends on the Tabor parameter alone, for a paraboloid on a half-space under the 3-9 law.
+
+`series` (of one number), `events` (pull-off, zero load, jumps, energies), `curves` (whole curves) read what `build` and
+`build_curves` have made of traces: ``python -m halfspace.atlas``. To read it takes NumPy alone.
+"""
 
 from halfspace.atlas.curves import Curve, curve
 from halfspace.atlas.events import (
@@ -13,16 +17,5 @@ from halfspace.atlas.events import (
     zero_load,
 )
 
-__all__ = [
-    "Curve",
-    "Energy",
-    "Jump",
-    "birth_of_folds",
-    "curve",
-    "energy_lost",
-    "energy_released",
-    "jump_off",
-    "jump_on",
-    "pull_off",
-    "zero_load",
-]
+__all__ = ["Curve", "Energy", "Jump", "birth_of_folds", "curve", "energy_lost", "energy_released"]
+__all__ += ["jump_off", "jump_on", "pull_off", "zero_load"]

@@ -24,12 +24,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--check", type=int, metavar="N", help="compare them with the source at N Tabor parameters")
     parser.add_argument("--seed", type=int, default=1, help="of the Tabor parameters of --check")
     given = parser.parse_args(arguments)
-    directory = given.nodes / build.digest()
+    digest = build.digest()
+    directory = given.nodes / digest
     directory.mkdir(parents=True, exist_ok=True)
     node = build.events_solved(directory, _told)
     if given.check:
         return _check(node, build.sample(given.check, given.seed, birth_of_folds().value))
-    content = build.built(node)
+    content = build.built(node, digest)
     gap = series_of(content["series"]["zero_load.central_gap"])
     curves = build_curves.built(build_curves.states_solved(directory, gap, _told))
     text = json.dumps(content, separators=(",", ":")).replace('],"', '],\n"')

@@ -105,8 +105,8 @@ def digest() -> str:
     return found.hexdigest()[:16]
 
 
-def built(node: Node) -> Entry:
-    """Content of the atlas's file, from the numbers at its nodes; Tabor parameters that are no nodes check it."""
+def built(node: Node, digest: str) -> Entry:
+    """Content of the file of series, from the numbers at its nodes; Tabor parameters that are no nodes check it."""
     birth = birth_of_folds(node)
     of_all = [f"{event}.{quantity}" for event in EVENTS for quantity in QUANTITIES]
     of_all.remove("zero_load.load")
@@ -120,7 +120,7 @@ def built(node: Node) -> Entry:
             "command": "make atlas",
             "what": f"halfspace.trace(tabor, rtol={RTOL:g}), paraboloid on a half-space, 3-9 law",
             "version": version("fem-adhesion"),
-            "digest": digest(),
+            "digest": digest,
         },
         "tabor": [LEAST, MOST],
         "birth": [birth.value, birth.error],

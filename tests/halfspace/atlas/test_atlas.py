@@ -255,10 +255,11 @@ def test_it_needs_numpy_alone():
     assert subprocess.check_output([sys.executable, "-c", f"{code}; {solver}"], text=True).split() == ["[]", "[]"]
 
 
-def test_the_file_is_small_and_packed():
-    assert FILE.stat().st_size < 300_000
+def test_the_files_are_small_and_packed():
+    files = [FILE, FILE.with_name("curves.npz")]
+    assert sum(file.stat().st_size for file in files) < 300_000
     packed = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]["halfspace"]
-    assert FILE in [file for pattern in packed for file in (ROOT / "halfspace").glob(pattern)]
+    assert {*files} <= {file for pattern in packed for file in (ROOT / "halfspace").glob(pattern)}
 
 
 def test_the_file_says_what_made_it():
@@ -275,13 +276,18 @@ def test_the_file_says_what_made_it():
 # --- how it is made ---
 
 
-def test_a_build_goes_on_from_the_nodes_that_are_solved(tmp_path, monkeypatch):
-    solved = []
-    monkeypatch.setattr(build, "solved", lambda tabor: solved.append(tabor) or {"pull_off.load": Estimate(tabor, 0.0)})
+def test_a_build_goes_on_from_the_nodes_that_are_solved(tmp_path):
+    solved, told = [], []
+
+    def solve(tabor):
+        solved.append(tabor)
+        return {"load": Estimate(tabor, 0.5)}
+
     for _ in range(2):
-        node = build.Store(tmp_path / "nodes.jsonl", lambda *_: None)
-        assert [node(tabor)["pull_off.load"].value for tabor in (0.1, 0.2, 0.1)] == [0.1, 0.2, 0.1]
+        node = build.Store(tmp_path / "nodes.jsonl", solve, lambda pair: Estimate(*pair), told.append)
+        assert [node(tabor)["load"] for tabor in (0.1, 0.2, 0.1)] == [Estimate(one, 0.5) for one in (0.1, 0.2, 0.1)]
     assert solved == [0.1, 0.2]
+    assert told == ["nodes: 1, the last at tabor 0.1", "nodes: 2, the last at tabor 0.2"]
 
 
 def test_a_series_through_a_known_number_is_that_number():
@@ -295,8 +301,7 @@ def test_a_series_through_a_known_number_is_that_number():
 def test_a_check_fails_where_the_file_is_off(monkeypatch, capsys, tmp_path):
     numbers = build.solved(1.0)
     monkeypatch.setattr(build, "sample", lambda *_: np.array([1.0]))
-    monkeypatch.setattr(build, "solved", lambda _: numbers)
-    assert main(["--check", "1", "--nodes", str(tmp_path / "right")]) == 0
-    monkeypatch.setattr(build, "solved", lambda _: numbers | {"pull_off.load": Estimate(-5.25, 1e-10)})
-    assert main(["--check", "1", "--nodes", str(tmp_path / "wrong")]) == 1
+    for off, wrong in (({}, 0), ({"pull_off.load": Estimate(-5.25, 1e-10)}, 1)):
+        monkeypatch.setattr(build, "solved", lambda _, off=off: numbers | off)
+        assert main(["--check", "1", "--nodes", str(tmp_path / str(wrong))]) == wrong
     assert "pull_off.load" in capsys.readouterr().out
