@@ -53,11 +53,6 @@ class FiniteStrainProblem(Valued):
         return self.held.body
 
     @property
-    def reuse(self) -> float:
-        """As of a condensed body where it is linear; else none, as the body's factors serve many states anyway."""
-        return 0.0 if self.stretch else self.interface.reuse
-
-    @property
     def tabor(self) -> float:
         """Tabor parameter mu."""
         return self.interface.tabor

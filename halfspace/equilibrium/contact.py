@@ -16,7 +16,7 @@ import math
 from collections import deque
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -68,9 +68,6 @@ class ContactProblem(Valued):
     tabor: float
     law: Law = LENNARD_JONES
     profile: Surface = PARABOLOID
-
-    reuse: ClassVar[float] = 1e-3
-    """Relative size of a step after which the factors from before it serve once more."""
 
     @cached_property
     def scales(self) -> Scales:

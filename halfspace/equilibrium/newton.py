@@ -1,9 +1,4 @@
-"""Damped Newton's method on an equilibrium problem bordered by one control.
-
-A factorisation serves once more where the step after it was so short that the next is as good with the old factors: the
-last step, which only tells that the one before was right, and the tangent of the path cost no factorisation of their
-own. Each ends at the rounding all the same, since what is left is told by how fast the steps shrink.
-"""
+"""Damped Newton's method on an equilibrium problem bordered by one control."""
 
 from __future__ import annotations
 
@@ -25,11 +20,8 @@ class NewtonSettings:
 
     growth: float = 10.0  # of the relative residual, let through in one step
     round_off: float = 1e-10  # relative size of a step below which the residual may be no more than rounding
-    slow: float = 0.1  # part of a step that may be left after one with old factors; if more, they are made anew
     rough: float = 3e-2  # relative accuracy of a first step that is iterated for; later the square of that before
     left: float = 1e-4  # of the tolerance: error left by the last step; the least of any step that is iterated for
-    refined: float = 1e-13  # relative error left in a tangent
-    refinements: int = 4  # of a tangent by old factors, before they are made anew
     turns: int = 12  # steps towards a turning point
     astray: float = 0.01  # relative size of a step to the path, from where it cannot be told how the path goes
     turned: float = 1e-7  # relative size of the last of them: what it leaves goes as its square
@@ -41,11 +33,6 @@ NEWTON = NewtonSettings()
 
 class Equilibrium(Protocol):
     """What the solver, the path and the events need to know of a contact problem, condensed or not."""
-
-    @property
-    def reuse(self) -> float:
-        """Relative size of a step after which a solver serves once more; 0 where making one is the least work."""
-        ...
 
     def residual(self, x: Array) -> Array:
         """Left-hand sides of all equations but the control."""
@@ -218,23 +205,18 @@ def attempt(
     if np.isnan(F[-1]):
         return Unsolved("the start has no contact radius to be prescribed; start from a state in contact")
     before = last = 1.0 if contraction < 1 else math.inf
-    solver: Solver | None = None
     astray = 0.0
     for iteration in range(1, max_iterations + 1):
-        fresh = solver is None
-        solver = solver or problem.bordered_solver(x, problem.gradient(x, control.weights))
-        accuracy = NEWTON.left if problem.reuse else min(max(before**2, NEWTON.left), NEWTON.rough)
+        solver = problem.bordered_solver(x, problem.gradient(x, control.weights))
+        accuracy = min(max(before**2, NEWTON.left), NEWTON.rough)
         dx = -solver(F, accuracy)
         update = problem.size(x, dx)
         if not math.isfinite(update):
             break
         astray = astray or update
         x, F, damping = _damped(problem, x, F, dx, control)
-        left = update * min(1.0, max(update, accuracy) if fresh else update / before)
-        if damping == 1 and update < tolerance and left < NEWTON.left * tolerance:
+        if damping == 1 and update < tolerance and update * max(update, accuracy) < NEWTON.left * tolerance:
             return Solution(x, problem.observables(x), iteration, update, control, solver, astray)
-        if damping < 1 or update > problem.reuse or (not fresh and update > NEWTON.slow * before):
-            solver = None
         if not damping or update > contraction * last:
             break
         last, before = before, update
@@ -244,24 +226,9 @@ def attempt(
     )
 
 
-def tangent(problem: Equilibrium, solution: Solution) -> Array:
-    """Direction of the path at a solution in which the weighted observables of its control change by 1.
-
-    The factors at hand give it to the size of the last step; what they leave is solved for by them again.
-    """
-    row = problem.gradient(solution.x, solution.control.weights)
-    unit = _last(row.size)
-    if not problem.reuse:
-        return solution.solver(unit)
-    t, before = solution.solver(unit), 1.0
-    for _ in range(NEWTON.refinements):
-        change = solution.solver(unit - appended(problem.along(solution.x, t), float(row @ t)))
-        t = t + change
-        size = math.sqrt(float(change @ change) / float(t @ t))
-        if size * min(1.0, size / before) < NEWTON.refined:
-            return t
-        before = size
-    return problem.bordered_solver(solution.x, row)(unit)
+def tangent(solution: Solution) -> Array:
+    """Direction of the path in which the sum of the control changes by 1, right to the size of the last step."""
+    return solution.solver(_last(solution.x.size))
 
 
 @final

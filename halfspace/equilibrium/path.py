@@ -133,7 +133,7 @@ def make_point(
 
     That (4,) is a covector on the observables: the arclength's gradient at a point nearby.
     """
-    tangent = newton.tangent(problem, solution)
+    tangent = newton.tangent(solution)
     rates = problem.rates(solution.x, tangent)
     length = math.copysign(math.sqrt(metric.weights @ rates**2), direction @ rates)
     along, rates = tangent / length, rates / length
