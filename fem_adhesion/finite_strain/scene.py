@@ -160,7 +160,7 @@ def find_jumps(scene: Scene, rtol: float = 1e-4, settings: Settings = USUAL) -> 
     found = {name: event for name, event in find_events(curve).items() if name in JUMPS}
     with _cause_told(scene, settings):
         ascent = ascend(on_all(found, lowest.stages[0]), lowest, rtol, rung, range(1, 1 + settings.most_rungs))
-        _require_no_needle(ascent.chains[0][-1])
+        _require_no_needle(ascent.state)
     return ascent.events
 
 

@@ -2,10 +2,10 @@
 
 In the order of reading: `trace` (from a tolerance to a curve), `grids` (how fine they are, and which chart serves which
 contact radius), `kernels` (the pressure by panels, or by triangles or bands as in 1997), `stages` (events from one grid
-to the next, and what their changes say of the error), `refinement` (the ladder of ever finer stages), `further_folds`
-(those between the jumps, when they are asked for), `finite_bodies` (bodies with a length, whose operator changes with
-the contact), `layered` (for layers and coatings, most of which is the half-space's), `standing` (their events, each on
-a grid of its own that stands still), `sweep` (many curves as arrays).
+to the next, and what their changes say of the error), `refinement` (the ladder of ever finer stages), `finite_bodies`
+(bodies with a length, whose operator changes with the contact), `layered` (for layers and coatings, most of which is
+the half-space's), `standing` (their events, each on a grid of its own that stands still), `sweep` (many curves as
+arrays).
 
 An elastic body without a length of its own is homogeneous, so one compliance matrix serves every contact radius: the
 grid breathes with the contact, the radius joins the unknowns, and the spike of tension at the contact edge, whose width

@@ -8,24 +8,32 @@ half of it where the higher rung leaves a third of that error at most, more wher
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from typing import TypeVar
 
-from halfspace.accuracy.further_folds import Completed, FurtherFolds
 from halfspace.accuracy.stages import Charted, FoldsLost, Rung, State, on_all
-from halfspace.equilibrium.charts import COMPRESSION, trace_charts
-from halfspace.equilibrium.conditions import STEEPEST
-from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.charts import COMPRESSION, Stage, trace_charts
+from halfspace.equilibrium.conditions import FOLD, STEEPEST, Located
+from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import FOLDS, Event, Tolerance
-from halfspace.equilibrium.search import energy_released, energy_size, find_events, folds_in_doubt
-from halfspace.equilibrium.states import Ladder
-from halfspace.errors import ContactTooWide, GridTooLarge, IllPosed, InputError, NotConverged
+from halfspace.equilibrium.events import FOLDS, Event, Tolerance, Unconfirmed, numbered
+from halfspace.equilibrium.path import Point, Segment
+from halfspace.equilibrium.search import (
+    Chains,
+    confirmed,
+    energy_released,
+    energy_size,
+    find_events,
+    folds_in_doubt,
+    turns,
+)
+from halfspace.equilibrium.states import Ladder, met_again
+from halfspace.errors import ContactTooWide, GridTooLarge, IllPosed, InputError, NotConverged, Unsolved
 from halfspace.values import Estimate, Valued
 
+T = TypeVar("T")
 MOST_RUNGS = 4  # above the lowest
-AWAY = 0.1  # eps from zero approach: with 1, a tenth of all energies had estimates over a hundred times their errors
 FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and rounding leave
 
 
@@ -69,79 +77,106 @@ def _climb_from(
     for stage in lowest.stages:
         state = on_all(state, stage)
     ascent = ascend(state, lowest, rtol, rung, range(start + 1, start + most_rungs + 1))
-    below, higher, chains, events = ascent.below, ascent.higher, ascent.chains, ascent.events
-    state = chains[0][-1]
-    margin = _margin(chains, higher)
-    if folds and margin and margin.value + margin.error < 0 and "jump_on" not in events:
+    below, higher, margin = ascent.below, ascent.higher, _margin(ascent.chains, ascent.higher)
+    if folds and margin and margin.value + margin.error < 0 and "jump_on" not in ascent.events:
         raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
     before = (*lowest.stages, *(() if below is lowest else below.stages[-1:]))
-    jumps = tuple(state[name] for name in FOLDS if name in state)
-    further = FurtherFolds(segments if folds else (), jumps, before, higher)
+    jumps = [ascent.state[name] for name in FOLDS if name in ascent.state]
+    further, lost = further_folds(segments if folds else (), jumps, before, higher)
+    chains = _in_order(ascent.chains, further)
     lowest_stage = below.stages[-1] if below.stages else Charted(tuple(charts))
     coarser = (higher.coarser,) if higher.coarser else ()
     ladder = Ladder((*coarser, lowest_stage, *higher.stages), higher.twin, higher.rule)
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
-        Completed(events, further.events),
+        _in_order(ascent.events, higher.estimates(further)),
         energy_along(chains, higher),
-        tuple(Completed(state, partial(further.stage, number)) for number, state in enumerate(chains[0])),
+        tuple({name: one[0][k] for name, one in chains.items()} for k in range(len(ladder.chain))),
         ladder,
         time.perf_counter() - began,
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
         margin,
-        on_twin=chains[1][0] if higher.twin else {},
-        left_out=further.unconfirmed,
+        on_twin={name: one[1][0] for name, one in chains.items()} if higher.twin else {},
+        unconfirmed=tuple(Unconfirmed(*map(float, point.observables[:CONTACT_RADIUS])) for point in lost),
     )
+
+
+def _in_order(known: Mapping[str, T], further: Mapping[str, T]) -> dict[str, T]:
+    """What is known of the events and of the folds between the jumps, in order along the curve."""
+    after = {name: known[name] for name in ("jump_off", "zero_load") if name in known}
+    return {**{name: one for name, one in known.items() if name not in after}, **further, **after}
+
+
+def further_folds(
+    segments: Sequence[Segment], jumps: Sequence[Located], before: Sequence[Stage], last: Rung
+) -> tuple[dict[str, Chains], list[Point]]:
+    """Folds between the jumps by name, and about where the curve has others that no finer grid has.
+
+    The segments are the curve as it was traced, the jumps the outermost folds, on the finest discretisation. On each of
+    the stages `before` a fold is solved for on the way to the last rung; where one does not have it, a later one may:
+    its change is then from farther back.
+    """
+
+    def solve(fold: Located) -> Chains | Unsolved:
+        for stage in before:
+            fold = met_again(stage, fold) or fold
+        return last.chains_of(fold)
+
+    kept, lost = confirmed(turns(segments, FOLD, slice(1, -1)) if segments else [], solve, jumps)
+    return numbered(kept), lost
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ascent(Valued):
-    """How far a ladder was climbed: the last two rungs, the chains of states between them, and the events there."""
+    """How far a ladder was climbed: the last two rungs, the chains of each event between them, and the events there."""
 
     below: Rung
     higher: Rung
-    chains: list[list[State]]
+    chains: dict[str, Chains]
     events: dict[str, Event]
 
+    @property
+    def state(self) -> State:
+        """The events on the last stage."""
+        return {name: chains[0][-1] for name, chains in self.chains.items()}
 
-def ascend(state: State, higher: Rung, rtol: float, rung: Callable[[int], Rung], levels: Sequence[int]) -> Ascent:
+
+def ascend(state: State, lowest: Rung, rtol: float, rung: Callable[[int], Rung], levels: Sequence[int]) -> Ascent:
     """Solve for the events of a rung on those of the levels above it, one after the other, until `rtol` is met.
 
     Or as long as there is memory for the next level, where that is not the first.
     """
-    for level in levels:
+    first, *others = levels
+    ascent = _risen(lowest, state, rung(first))
+    for level in others:
+        if not Tolerance.on(ascent.events, rtol).missed(ascent.events):
+            break
         try:
-            next_rung = rung(level)
-            chains = next_rung.chains(state)
+            ascent = _risen(ascent.higher, ascent.state, rung(level))
         except GridTooLarge:
-            if level == levels[0]:
-                raise
             break
-        below, higher, state = higher, next_rung, chains[0][-1]
-        events = higher.estimates(chains)
-        if not Tolerance.on(events, rtol).missed(events):
-            break
-    return Ascent(below, higher, chains, events)
+    return ascent
 
 
-def _margin(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate | None:
+def _risen(below: Rung, state: State, higher: Rung) -> Ascent:
+    """Solve for the events of one rung on the next."""
+    chains = higher.chains(state)
+    return Ascent(below, higher, chains, higher.estimates(chains))
+
+
+def _margin(found: Mapping[str, Chains], rung: Rung) -> Estimate | None:
     """How far the curve is from folds, with the error that the changes along the chains leave."""
-    if "steepest" not in chains[0][-1]:
+    if "steepest" not in found:
         return None
-    values = [[STEEPEST.of(state["steepest"].point) for state in chain] for chain in chains]
+    values = [[STEEPEST.of(state.point) for state in chain] for chain in found["steepest"]]
     return rung.rule.estimate(values, 0.0) + Estimate(0.0, FLAT)
 
 
-def energy_along(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate:
-    """Energy released from separation to zero approach, with the error that the changes along the chains leave.
-
-    Those of the load there count as well: it is the energy's derivative by the approach. Where the energy stands still
-    by accident, it does not a little `AWAY`, and that is as good a place to end at.
-    """
-    values = [[energy_released(state) for state in chain] for chain in chains]
-    ends = [[AWAY * float(state["zero_approach"].point.observables[LOAD]) for state in chain] for chain in chains]
-    best = chains[0][-1]
-    sizes = sum(energy_size(best[end]) for end in ("separated", "zero_approach"))
-    uncounted = rung.rule.beyond * abs(float(best["separated"].point.observables[APPROACH]))
-    return rung.rule.estimate(values, sizes, ends) + Estimate(0.0, uncounted)
+def energy_along(found: Mapping[str, Chains], rung: Rung) -> Estimate:
+    """Energy released from separation to zero approach, with the error that the changes along the chains leave."""
+    ends = found["separated"], found["zero_approach"]
+    values = [[energy_released(*pair) for pair in zip(*both, strict=True)] for both in zip(*ends, strict=True)]
+    apart, touching = (chains[0][-1] for chains in ends)
+    uncounted = rung.rule.beyond * abs(float(apart.point.observables[APPROACH]))
+    return rung.rule.estimate(values, energy_size(apart) + energy_size(touching)) + Estimate(0.0, uncounted)

@@ -11,6 +11,7 @@ from halfspace.equilibrium.charts import Chart, Stage
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.events import FOLDS, USUAL, ErrorRule, Event, estimate_event, is_event
+from halfspace.equilibrium.search import Chains
 from halfspace.equilibrium.states import met_again
 from halfspace.errors import NotConverged, Unsolved
 from halfspace.values import Valued
@@ -65,13 +66,11 @@ class Rung(Valued):
     coarser: Stage | None = None
     rule: ErrorRule = USUAL
 
-    def chains(self, state: State) -> list[list[State]]:
-        """Chains of states from a coarser stage and the rung below, and from its twin, to the last stage."""
-        found = {name: _demanded(name, self.chains_of(event)) for name, event in state.items()}
-        lengths = [bool(self.coarser) + 1 + len(self.stages), *([2] if self.twin else [])]
-        return [[{name: found[name][i][j] for name in found} for j in range(n)] for i, n in enumerate(lengths)]
+    def chains(self, state: State) -> dict[str, Chains]:
+        """Chains of each event from a coarser stage and the rung below, and from its twin, to the last stage."""
+        return {name: _demanded(name, self.chains_of(event)) for name, event in state.items()}
 
-    def chains_of(self, event: Located) -> list[list[Located]] | Unsolved:
+    def chains_of(self, event: Located) -> Chains | Unsolved:
         """Those of one event."""
         chain, beside = [event], list[list[Located]]()
         for stage in self.stages:
@@ -91,10 +90,9 @@ class Rung(Valued):
             beside.append([found, chain[-1]])
         return [chain, *beside]
 
-    def estimates(self, chains: Sequence[Sequence[State]]) -> dict[str, Event]:
-        """Events of the last state, with their changes along the chains as errors."""
-        names = [name for name in chains[0][-1] if is_event(name)]
-        return {name: estimate_event(name, [[s[name] for s in chain] for chain in chains], self.rule) for name in names}
+    def estimates(self, found: Mapping[str, Chains]) -> dict[str, Event]:
+        """Events, with their changes along the chains as errors."""
+        return {name: estimate_event(name, chains, self.rule) for name, chains in found.items() if is_event(name)}
 
 
 class FoldsLost(NotConverged):

@@ -45,7 +45,7 @@ class EquilibriumPath(Valued):
         Points in order on the coarsest discretisation, from which all else starts.
     events : mapping of str to Event
         ``pull_off``, ``zero_load`` and, where the curve folds, ``jump_on`` and ``jump_off``; where it has more folds,
-        ``fold_2``, ``fold_3`` ... between these, solved for when one is first asked for.
+        ``fold_2``, ``fold_3`` ... between these.
     energy : Estimate
         Potential energy released from `Scales.separated_approach` on the separated branch to zero approach in contact,
         in R dgamma eps.
@@ -64,8 +64,8 @@ class EquilibriumPath(Valued):
         How far apart the numbers of an event are in models between which the assumptions leave a choice, if they do.
     on_twin : mapping of str to Located
         The events, and the two states of `energy`, on the ladder's twin.
-    left_out : callable
-        The folds of `unconfirmed`.
+    unconfirmed : tuple of Unconfirmed
+        Folds between the jumps that cannot be told: the curve as it was traced has them, but no finer grid.
     """
 
     tabor: float
@@ -79,7 +79,7 @@ class EquilibriumPath(Valued):
     margin: Estimate | None = None
     model_uncertainty: Callable[[str], Mapping[str, float]] | None = field(default=None, compare=False)
     on_twin: Mapping[str, Located] = field(default_factory=dict)
-    left_out: Callable[[], tuple[Unconfirmed, ...]] = field(default=tuple, compare=False)
+    unconfirmed: tuple[Unconfirmed, ...] = ()
 
     @property
     def finest(self) -> Stage:
@@ -136,11 +136,6 @@ class EquilibriumPath(Valued):
         if self.margin and (abs(self.margin.value) <= self.margin.error or found != (self.margin.value < 0)):
             return None
         return found
-
-    @property
-    def unconfirmed(self) -> tuple[Unconfirmed, ...]:
-        """Folds between the jumps that cannot be told: the curve as it was traced has them, but no finer grid."""
-        return self.left_out()
 
     @property
     def approach_scale(self) -> float:

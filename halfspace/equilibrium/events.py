@@ -84,7 +84,7 @@ def numbered(folds: Iterable[T]) -> dict[str, T]:
 
 
 def usual(events: Mapping[str, T]) -> dict[str, T]:
-    """Events but for the folds between the jumps, which are solved for when they are first asked for."""
+    """Events but for the folds between the jumps."""
     return {name: events[name] for name in EVENTS if name in events}
 
 
@@ -165,14 +165,9 @@ class ErrorRule:
         changes = np.abs(np.diff(np.array(chain), axis=0))
         return np.asarray(np.tensordot(self.parts[-len(changes) :] or np.ones(len(changes)), changes, 1))
 
-    def estimate(
-        self, chains: Sequence[Sequence[float]], sizes: float, more: Sequence[Sequence[float]] = ()
-    ) -> Estimate:
-        """Of a number, by the chain along which it changes most, and what rounding leaves of terms of such sizes.
-
-        More chains may be of another number whose changes count as its own.
-        """
-        change = max(float(self.change(chain)) for chain in (*chains, *more))
+    def estimate(self, chains: Sequence[Sequence[float]], sizes: float) -> Estimate:
+        """Of a number, by the chain along which it changes most, and what rounding leaves of terms of such sizes."""
+        change = max(float(self.change(chain)) for chain in chains)
         return Estimate(chains[0][-1], self.remaining * change + ROUND_OFF * (1 + sizes))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 from typing import NoReturn
@@ -232,9 +232,8 @@ def _missing(segment: Segment, event: str) -> NoReturn:
     )
 
 
-def energy_released(located: Mapping[str, Located]) -> float:
-    """Energy between the states ``separated`` and ``zero_approach`` of `find_events`, in R dgamma eps."""
-    before, after = located["separated"], located["zero_approach"]
+def energy_released(before: Located, after: Located) -> float:
+    """Energy between two states, as ``separated`` and ``zero_approach`` of `find_events`, in R dgamma eps."""
     return before.problem.energy(before.point.x) - after.problem.energy(after.point.x)
 
 

@@ -194,7 +194,7 @@ def test_a_family_whose_estimates_are_too_small_or_too_large_is_not_honest(part,
 def test_the_error_of_the_energy_is_no_less_than_its_last_change(solve, tabor):
     """On the half-space the changes from the twin, which has other cells, may be larger."""
     path = solve(tabor, rtol=1e-3)
-    energies = [energy_released(stage) for stage in path.stages]
+    energies = [energy_released(stage["separated"], stage["zero_approach"]) for stage in path.stages]
     assert energies[-1] == path.energy.value
     *_, last = changes = np.abs(np.diff(energies))
     assert last <= path.energy.error <= 3 * np.sum(changes) + 1e-11 * (1 + path.energy.value)

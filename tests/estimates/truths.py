@@ -156,7 +156,7 @@ def of_state(state):
     """Numbers of located events, and the energy."""
     found = {name: state[name].point.observables for name in state if is_event(name)}
     told = {f"{name} {q}": float(v) for name, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}
-    return told | {"energy": energy_released(state)}
+    return told | {"energy": energy_released(state["separated"], state["zero_approach"])}
 
 
 def points_on(stage, path, places):

@@ -162,9 +162,11 @@ def test_energy_released_is_the_work_of_the_load():
             alpha = start + (end - start) * (1 + node) / 2
             x = newton.solve(problem, x, newton.approach(alpha)).x
             released -= weight * (end - start) / 2 * problem.load(x)
-    assert energy_released(path.stages[0]) == pytest.approx(released, rel=1e-7, abs=0)
+    assert energy_released(path.stages[0]["separated"], path.stages[0]["zero_approach"]) == pytest.approx(
+        released, rel=1e-7, abs=0
+    )
     assert abs(path.energy.value - released) <= path.energy.error < 1e-4
-    changes = np.abs(np.diff([energy_released(stage) for stage in path.stages]))
+    changes = np.abs(np.diff([energy_released(stage["separated"], stage["zero_approach"]) for stage in path.stages]))
     assert path.energy.error == pytest.approx(2 * np.sum(changes), rel=1e-3, abs=1e-10)
 
 
