@@ -7,33 +7,33 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from halfspace.errors import NotConverged
+from halfspace.errors import NotConverged, Unsolved, required
 
 EPSILON = sys.float_info.epsilon
 MOST_ITERATIONS = 100  # iterations of Brent's method, which halves its interval at worst every third
 
 
 def root(function: Callable[[float], float], first: float, last: float, what: str, **tolerances: Any) -> float:
-    """Root of a continuous function between two places at which its signs differ; else, or of nan, raise NotConverged.
+    """Root of a continuous function between two places as of `sought`, or raise NotConverged."""
+    return required(sought(function, first, last, what, **tolerances))
 
-    The error says what is sought and what to do if it is not there: "the contact edge; refine the grid". Tolerances are
-    ``xtol``, absolute, and ``rtol``, of the place: the root is known to their sum.
+
+def sought(
+    function: Callable[[float], float], first: float, last: float, what: str, **tolerances: Any
+) -> float | Unsolved:
+    """Root of a continuous function between two places at which its signs differ; Unsolved else, or of nan.
+
+    The reason says what is sought and what to do if it is not there: "the contact edge; refine the grid". Tolerances
+    are ``xtol``, absolute, and ``rtol``, of the place: the root is known to their sum.
     """
     sought, _, remedy = what.partition("; ")
-
-    def number(x: float) -> float:
-        value = float(function(x))
-        if math.isnan(value):
-            raise NotConverged(f"{sought} is lost at {x:.6g}, where it cannot be told; {remedy}")
-        return value
-
-    at = number(first), number(last)
-    if at[0] and at[1] and (at[0] < 0) == (at[1] < 0):
-        raise NotConverged(
+    at = float(function(first)), float(function(last))
+    if at[0] and at[1] and (at[0] < 0) == (at[1] < 0) and not math.isnan(sum(at)):
+        return Unsolved(
             f"{sought} is not between {first:.6g} and {last:.6g}, where the signs are the same ({at[0]:.2g} and "
             f"{at[1]:.2g}); {remedy}"
         )
-    return _brent(number, (first, last), at, what=sought, remedy=remedy, **tolerances)
+    return _brent(function, (first, last), at, what=sought, remedy=remedy, **tolerances)
 
 
 def rising_root(
@@ -69,7 +69,7 @@ def _brent(
     remedy: str,
     xtol: float = 2e-12,
     rtol: float = 4 * EPSILON,
-) -> float:
+) -> float | Unsolved:
     """Brent's method (Algorithms for Minimization Without Derivatives, 1973, chapter 4) between two changed signs.
 
     Of three places b is the best, a the one before it and c beyond the root. SciPy has it in a part that takes longer
@@ -79,6 +79,8 @@ def _brent(
     c, fc = a, fa
     step = before = b - a
     for _ in range(MOST_ITERATIONS):
+        if math.isnan(fa + fb):
+            return Unsolved(f"{what} is lost at {b:.6g}, where it cannot be told; {remedy}")
         if (fb > 0) == (fc > 0):
             c, fc, step, before = a, fa, b - a, b - a
         if abs(fc) < abs(fb):
@@ -89,8 +91,8 @@ def _brent(
         step, before = _interpolated(a, b, c, fa, fb, fc, before, step, tolerance)
         a, fa = b, fb
         b += step if abs(step) > tolerance else math.copysign(tolerance, half)
-        fb = function(b)
-    raise NotConverged(f"{what} is not pinned down in {MOST_ITERATIONS} steps, limit: xtol; {remedy}")
+        fb = float(function(b))
+    return Unsolved(f"{what} is not pinned down in {MOST_ITERATIONS} steps, limit: xtol; {remedy}")
 
 
 def _interpolated(

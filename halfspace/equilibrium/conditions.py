@@ -31,6 +31,7 @@ from halfspace.equilibrium.path import (
     solved_point,
 )
 from halfspace.errors import Unsolved, required
+from halfspace.roots import sought
 from halfspace.values import Array, Valued
 
 ROUND_OFF = 1e-11  # what Newton's method, root finder and matrices leave, relative to 1 + the sizes of the terms
@@ -42,7 +43,7 @@ class ConditionSettings:
 
     shortest: float = 1e-12  # arclength to which a root is known
     shorter: int = 4  # steps in the place of one that hides a pair of roots
-    halvings: int = 20  # of an interval in which Newton's method does not find an event
+    leap: float = 1e-3  # of what should vanish, in its largest value around: more is left where states leap
     long: float = 0.05  # arclength in which a rate that nearly vanishes at an end may do so twice
     solved: float = 3e-9  # relative size of the last step: after 1e-8 loads that should be zero were up to 3e-11
     nearby: float = 0.3  # arclength within which an event is looked for on another discretisation at once
@@ -204,33 +205,37 @@ def _unfelt(a: Point, b: Point, condition: Condition) -> bool:
     return condition.stationary and max(abs(condition.of(a)), abs(condition.of(b))) < PATH.unfelt
 
 
-def between(
-    problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric, halvings: int = 0
-) -> Located | Unsolved:
+def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located | Unsolved:
     """Find the root between two points of which the second was reached from the first.
 
     Newton's method on the equilibrium together with the condition finds it from where the cubics through both points
-    have it. Where that does not end between them, as where the root is a turning point at one of the ends, it is tried
-    again in the half at whose ends the signs differ, until one end is the root but for rounding.
+    have it. Where that does not end between them, as where the contact edge runs over nodes that stand still, so does
+    halving the interval at worst, with the corrector at every trial.
     """
     length, part = b.arclength - a.arclength, _by_cubic(a, b, condition, metric)
     if part is not None:
         found = _solved(problem, condition, hermite(problem, a, b, part, metric), metric, a, length)
         if found and all(metric.distance(found.point, end) <= length for end in (a, b)):
             return found
-    end = min(a, b, key=lambda point: abs(condition.of(point)))
-    if abs(condition.of(end)) < ROUND_OFF:
-        return Located(condition, problem, end, (condition.of(b) - condition.of(a)) / length)
-    if halvings == LOCATE.halvings:
+    trials: dict[float, Point | Unsolved] = {0.0: a, 1.0: b}
+
+    def quantity(part: float) -> float:
+        if part not in trials:
+            trials[part] = part_way(problem, a, b, part, metric)
+        point = trials[part]
+        return condition.of(point) if point else math.nan
+
+    root = sought(quantity, 0.0, 1.0, "an event; take a smaller rtol", xtol=LOCATE.shortest / abs(length), rtol=1e-14)
+    point = root if isinstance(root, Unsolved) else trials[root]
+    if not point:
+        return point
+    leap = max(LOCATE.leap, 2 * LOCATE.shortest / abs(length))  # what the root finder leaves of a short interval
+    if abs(condition.of(point)) > leap * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
         return Unsolved(
             f"an event near approach {a.observables[0]:.6g} eps, load {a.observables[1]:.6g} R dgamma is lost: states "
             "next to each other lie on different branches; take a smaller rtol"
         )
-    middle = part_way(problem, a, b, 0.5, metric)
-    if not middle:
-        return middle
-    ends = (a, middle) if _changes(a, middle, condition) else (middle, seen_from(middle, b, metric))
-    return between(problem, *ends, condition, metric, halvings + 1)
+    return Located(condition, problem, point, (condition.of(b) - condition.of(a)) / length)
 
 
 def _by_cubic(a: Point, b: Point, condition: Condition, metric: Metric) -> float | None:

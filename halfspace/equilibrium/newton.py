@@ -226,9 +226,14 @@ def attempt(
     )
 
 
-def tangent(solution: Solution) -> Array:
-    """Direction of the path in which the sum of the control changes by 1, right to the size of the last step."""
-    return solution.solver(_last(solution.x.size))
+def tangent(problem: Equilibrium, solution: Solution) -> Array:
+    """Direction of the path at a solution in which the weighted observables of its control change by 1.
+
+    The factors of the last step give it to the size of that step; what they leave is solved for by them once again.
+    """
+    row, unit = problem.gradient(solution.x, solution.control.weights), _last(solution.x.size)
+    t = solution.solver(unit)
+    return t + solution.solver(unit - appended(problem.along(solution.x, t), float(row @ t)), NEWTON.left)
 
 
 @final

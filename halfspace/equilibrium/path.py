@@ -133,7 +133,7 @@ def make_point(
 
     That (4,) is a covector on the observables: the arclength's gradient at a point nearby.
     """
-    tangent = newton.tangent(solution)
+    tangent = newton.tangent(problem, solution)
     rates = problem.rates(solution.x, tangent)
     length = math.copysign(math.sqrt(metric.weights @ rates**2), direction @ rates)
     along, rates = tangent / length, rates / length

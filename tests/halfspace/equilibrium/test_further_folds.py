@@ -20,13 +20,14 @@ from fem_adhesion.crosscheck.study import _compare_events
 from fem_adhesion.curve import record, terminal
 from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
+from halfspace.accuracy import refinement
 from halfspace.accuracy.grids import half_space_charts, resolution_for, under_sphere
-from halfspace.accuracy.stages import Rung
 from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import is_fold, usual
 from halfspace.equilibrium.path import Steps
+from halfspace.equilibrium.search import confirmed
 from halfspace.errors import InputError, NotConverged, Unsolved
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, Morse, PowerLaw
 from halfspace.profiles import Sphere
@@ -326,15 +327,16 @@ def test_coarse_elements_name_no_wiggle_a_fold(wound, rtol):
 @pytest.mark.parametrize("lost", [0, 1])
 def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch, lost):
     """Folds come in pairs: with one the other is in doubt as well."""
-    path, ups, chains_of = halfspace.trace(5.0, rtol=1e-3), iter(range(9)), Rung.chains_of
+    ups = iter(range(9))
 
-    def on_finer_grids(rung, event):
-        return Unsolved("not found again") if next(ups) == lost else chains_of(rung, event)
+    def on_finer_grids(traced, solve, known):
+        return confirmed(traced, lambda f: Unsolved("not found again") if next(ups) == lost else solve(f), known)
 
-    monkeypatch.setattr(Rung, "chains_of", on_finer_grids)
+    monkeypatch.setattr(refinement, "confirmed", on_finer_grids)
+    path = halfspace.trace(5.0, rtol=1e-3)
+    monkeypatch.undo()
     assert list(path.events) == ["pull_off", "jump_on", "jump_off", "zero_load"]
     true = halfspace.trace(5.0, rtol=1e-3)
-    monkeypatch.undo()
     for fold, name in zip(sorted(path.unconfirmed, key=lambda f: -f.central_gap), ("fold_2", "fold_3"), strict=True):
         assert fold.approach == pytest.approx(true.event(name).approach, abs=1e-3)
         assert fold.load == pytest.approx(true.event(name).load, abs=1e-3)
