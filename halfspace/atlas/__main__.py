@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Sequence
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -48,18 +49,17 @@ def _told(progress: str) -> None:
 
 def _check(node: build.Node, tabors: Array) -> int:
     """Print by number the largest deviation from the source, relative to its scale and to both errors."""
-    rows: dict[str, list[tuple[float, float, float]]] = {}
-    for tabor in tabors.tolist():
-        for name, off in build.deviations(stored()["series"], node(tabor), tabor).items():
-            rows.setdefault(name, []).append((off.relative, off.of_errors, tabor))
+    points = [point for tabor in tabors.tolist() for point in build.compared(stored()["series"], node(tabor), tabor)]
     print(f"\n{'number':36}{'relative':>10}{'at tabor':>12}{'of errors':>11}{'at tabor':>12}")
-    for name, found in rows.items():
-        relative, share = max(found), max(found, key=lambda row: row[1])
-        print(f"{name:36}{relative[0]:10.1e}{relative[2]:12.6g}{share[1]:11.2f}{share[2]:12.6g}")
+    for name in sorted({point["number"] for point in points}):
+        own = [point for point in points if point["number"] == name]
+        off, share = (max(own, key=itemgetter(key)) for key in ("relative", "of_errors"))
+        worst = f"{off['relative']:10.1e}{off['tabor']:12.6g}{share['of_errors']:11.2f}{share['tabor']:12.6g}"
+        print(f"{name:36}{worst}")
     few = tabors[:: max(1, len(tabors) // 20)].tolist()
-    off, share = map(max, zip(*(build_curves.deviations(tabor, curve(tabor)) for tabor in few), strict=True))
-    print(f"{'curves at ' + str(len(few)) + ' of them':36}{off:10.1e}{'':12}{share:11.2f}")
-    return int(share > 1 or any(share > 1 for found in rows.values() for _, share, _ in found))
+    relative, of_errors = map(max, zip(*(build_curves.deviations(tabor, curve(tabor)) for tabor in few), strict=True))
+    print(f"{'curves at ' + str(len(few)) + ' of them':36}{relative:10.1e}{'':12}{of_errors:11.2f}")
+    return int(max(of_errors, *(point["of_errors"] for point in points)) > 1)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -115,6 +115,7 @@ def built(node: Node, digest: str) -> Entry:
         found |= {f"{jump}.{number}": folded(node, jump, number, birth) for number in OF_JUMPS}
         name = f"{jump}.{end}.contact_radius"
         found[name] = radius(node, name, birth, series_of(found[f"{jump}.{end}.central_gap"]))
+    at = sample(CHECK_POINTS, 0, birth.value).tolist()
     return {
         "source": {
             "command": "make atlas",
@@ -125,7 +126,7 @@ def built(node: Node, digest: str) -> Entry:
         "tabor": [LEAST, MOST],
         "birth": [birth.value, birth.error],
         "series": found,
-        "check_points": list(checked(found, node, sample(CHECK_POINTS, 0, birth.value).tolist())),
+        "check_points": [point for tabor in at for point in compared(found, node(tabor), tabor)],
     }
 
 
@@ -227,35 +228,19 @@ def fitted(values: ArrayLike) -> Array:
     return np.tensordot(weights[:, None] * chebyshev.chebvander(chebyshev.chebpts1(len(f)), len(f) - 1).T, f, axes=1)
 
 
-class Deviation(NamedTuple):
-    """How far the atlas is from its source: in the number's unit, relative to its scale, and to both errors."""
+def compared(entries: Mapping[str, Entry], numbers: Numbers, tabor: float) -> list[Entry]:
+    """What the source says of a Tabor parameter, number by number, and how far series are off it.
 
-    value: float
-    relative: float
-    of_errors: float
-
-
-def deviations(entries: Mapping[str, Entry], numbers: Numbers, tabor: float) -> dict[str, Deviation]:
-    """How far series are from the numbers of a Tabor parameter.
-
-    The scale of an approach is eps and the range of those of all events, see
-    `halfspace.equilibrium.events.approach_scale`; that of other numbers is their size.
+    That is in the number's unit, relative to its scale, and in parts of both errors. The scale of an approach is eps
+    and the range of those of all events, see `halfspace.equilibrium.events.approach_scale`; that of others their size.
     """
     scale = approach_scale(number.value for name, number in numbers.items() if name.endswith("approach"))
-    found = {}
-    for name in numbers.keys() & entries.keys():
+    points = []
+    for name in (name for name in entries if name in numbers):
         value, error = (float(array[0]) for array in series_of(entries[name])(np.array([tabor])))
-        off, number = value - numbers[name].value, numbers[name]
-        size = scale if name.endswith("approach") else abs(number.value)
-        found[name] = Deviation(off, abs(off) / size, abs(off) / (error + number.error))
-    return found
-
-
-def checked(entries: Mapping[str, Entry], node: Node, tabors: Sequence[float]) -> Iterable[Entry]:
-    """Check points: what the source says of Tabor parameters that are no nodes, and how far the series are off."""
-    for tabor in tabors:
-        numbers = node(tabor)
-        for name, off in deviations(entries, numbers, tabor).items():
-            value, error = numbers[name].value, numbers[name].error
-            point = {"number": name, "reference": value, "reference_error": error, "deviation": off.value}
-            yield {"tabor": tabor, **point}
+        number = numbers[name]
+        off, size = value - number.value, scale if name.endswith("approach") else abs(number.value)
+        point = {"tabor": tabor, "number": name, "reference": number.value, "reference_error": number.error}
+        of_errors = abs(off) / (error + number.error)
+        points.append({**point, "deviation": off, "relative": abs(off) / size, "of_errors": of_errors})
+    return points
