@@ -1,6 +1,10 @@
 """The claims of Greenwood (1997): each is decided by a rule from numbers, which absurd numbers turn."""
 
+import dataclasses
 import math
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -9,6 +13,8 @@ import halfspace
 from fem_adhesion.common.page import titled
 from fem_adhesion.greenwood import claims, facts
 from fem_adhesion.greenwood.claims import CLAIMS, FAILS, HOLDS, MISPRINT, OPEN, Allowed, decide, judge
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.errors import InputError
 from halfspace.laws.law import require_law
 from halfspace.values import Estimate
 
@@ -80,6 +86,86 @@ def test_a_misprint_fails_as_printed_and_holds_as_read(claim, monkeypatch):
     assert neither.verdict == FAILS
     assert claim.reading.words not in neither.how
     assert verdict_of(monkeypatch, claim, inside(claim.allowed), read=right).verdict == HOLDS
+
+
+# --- what is measured ---
+
+
+class Lying:
+    """A path whose events, states and points have other numbers, and a fold made up or events missing."""
+
+    def __init__(self, path, lie):
+        self.path, self.lie = path, lie
+        self.events = lied(dict(path.events), lie)
+        self.events |= {"fold_2": self.events["pull_off"]} if lie.more else {}
+        self.events = self.events if lie.power >= 1 else {"pull_off": self.events["pull_off"]}
+
+    def __getattr__(self, name):
+        found = getattr(self.path, name)
+        return lied(found, self.lie) if name in ("approach", "load") else found
+
+    def at(self, **asked):
+        return lied(self.path.at(**asked), self.lie)
+
+    def states(self, condition):
+        return [dataclasses.replace(s, point=lied(s.point, self.lie)) for s in self.path.states(condition)]
+
+    def resampled(self, points):
+        return lied(self.path.resampled(points), self.lie)
+
+
+class Lie(NamedTuple):
+    """What becomes of a number x: factor |x|^power with the sign of x, and more."""
+
+    factor: float
+    power: float = 1.0
+    more: float = 0.0
+
+
+LIES = (
+    Lie(-0.5),
+    Lie(1.0, power=2.0),
+    Lie(2.2),
+    Lie(1.0, power=0.3),
+    *(Lie(1.0, more=more) for more in (5.0, -5.0, 1.0)),
+)
+TRUE = ("tabor", "spacing", "relaxation", "name")
+
+
+def lied(thing, lie):
+    """All numbers of a thing changed, but those that say what was asked, and errors."""
+    if isinstance(thing, EquilibriumPath):
+        return Lying(thing, lie)
+    if isinstance(thing, float) or (isinstance(thing, np.ndarray) and thing.dtype.kind == "f"):
+        return lie.factor * np.sign(thing) * np.abs(thing) ** lie.power + lie.more
+    if isinstance(thing, Mapping):
+        return {key: lied(value, lie) for key, value in thing.items()}
+    if isinstance(thing, tuple | list):
+        return type(thing)(lied(value, lie) for value in thing)
+    if not dataclasses.is_dataclass(thing):
+        return thing
+    names = [field.name for field in dataclasses.fields(thing) if field.init and field.name not in TRUE]
+    found = {name: lied(getattr(thing, name), lie) for name in names if not name.endswith("error")}
+    sweeps = {"sweeps": None if thing.sweeps else 7} if "sweeps" in found else {}
+    return dataclasses.replace(thing, **found | sweeps)
+
+
+def turns(claim, absurd):
+    """Whether a claim does not hold on absurd facts; not if it asks for a state that no curve has."""
+    try:
+        return judge(claim, absurd).verdict != HOLDS
+    except InputError:
+        return False
+
+
+def test_absurd_facts_turn_every_claim_that_holds(study):
+    """But those of formulas, which no fact enters."""
+    facts_of = {field.name: getattr(study, field.name) for field in dataclasses.fields(facts.Facts)}
+    absurd = [facts.Facts(**lied(facts_of, lie)) for lie in LIES]
+    held = [each.claim for each in study.claims if each.verdict == HOLDS and re.search(r"\bf\b", each.claim.measure)]
+    assert len(held) > 60
+    with np.errstate(invalid="ignore"):
+        assert [claim.words for claim in held if not any(turns(claim, lies) for lies in absurd)] == []
 
 
 # --- what the paper says, and what is so ---
