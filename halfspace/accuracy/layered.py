@@ -8,7 +8,7 @@ is discretised as any body with a length.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -19,7 +19,7 @@ from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.accuracy.stages import Discretised, charted
 from halfspace.accuracy.standing import sized
 from halfspace.elastic.grid import FLAT
-from halfspace.elastic.layered import Images, images_of, layered_panels, nearly_homogeneous
+from halfspace.elastic.layered import HOW, Images, images_of, layered_panels, nearly_homogeneous
 from halfspace.elastic.layered import layered as with_images
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import COMPRESSION, Chart
@@ -30,22 +30,21 @@ from halfspace.values import Array
 # Of what n nodes a panel leave, 10^-n, what polynomials in the contact radius may leave of a layer's images. On a stiff
 # coating pull-off's approach errs by 40 times that; estimates do not know it where finer grids have the same radii.
 BETWEEN = 1e-4
-# How many times as large as the change from twin to twin an error may be: both have the same images. Under a sharp
-# tip on strata 0.01 beta thin it was 2.8 times at every tolerance, on thicker ones at tight tolerances alone.
-DOUBT = 4
 WIDER = 2  # times the half-space's extent, to where all images are integrated
 
 
-def discretise(images: Images, scales: Scales, to_load: float, resolution: Resolution, _which: int) -> Discretised:
-    """Layered body at a resolution, under any surface; its twin has the same images."""
+def discretise(
+    images: Sequence[Images], scales: Scales, to_load: float, resolution: Resolution, which: int
+) -> Discretised:
+    """Layered body at a resolution, under any surface, by one of its images: its twin has others."""
     if math.isfinite(scales.profile.end):
-        return sized(layered_body(scales, images, resolution, to_load), resolution.nodes)
-    return charted(layered_charts(scales, images, resolution, to_load))
+        return sized(layered_body(scales, images[which], resolution, to_load), resolution.nodes)
+    return charted(layered_charts(scales, images[which], resolution, to_load))
 
 
 def layered(body: LayeredBody) -> Callable[[Scales, float, Resolution, int], Discretised]:
     """Discretises a layered body."""
-    return partial(discretise, images_of(body))
+    return partial(discretise, [images_of(body, spacing) for spacing in HOW.spacings])
 
 
 def layered_charts(

@@ -11,7 +11,7 @@ from functools import partial
 
 from halfspace.accuracy.grids import GRIDS, Resolution, twin_of
 from halfspace.accuracy.kernels import Kernel, require_kernel
-from halfspace.accuracy.layered import DOUBT, layered
+from halfspace.accuracy.layered import layered
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Discretised, Rung
 from halfspace.elastic.layers import LayeredBody
@@ -73,23 +73,19 @@ def trace(
     scales = Scales(tabor, require_law(law), require_profile(profile).surface(tabor), body)
     how = require_kernel(kernel, scales, rtol)
     discretise = partial(layered(body) if body else how.discretise, scales, to_load)
-    doubt = DOUBT if body else 1
-    return climb(rtol, partial(_rung, scales, rtol, how, discretise, doubt), to_load=to_load, most_rungs=how.most_rungs)
+    return climb(rtol, partial(_rung, scales, rtol, how, discretise), to_load=to_load, most_rungs=how.most_rungs)
 
 
 Discretise = Callable[[Resolution, int], Discretised]
 """Discretises a body at a resolution for a rung, 0, or for its twin, 1, which may differ in more than cells."""
 
 
-def _rung(scales: Scales, rtol: float, how: Kernel, discretise: Discretise, doubt: int, level: int) -> Rung:
-    """Rung of a level: the curve on the lowest, events on each above it and on a twin as fine as the rung below.
-
-    An error may be `doubt` times as large as by the change alone.
-    """
+def _rung(scales: Scales, rtol: float, how: Kernel, discretise: Discretise, level: int) -> Rung:
+    """Rung of a level: the curve on the lowest, events on each above it and on a twin as fine as the rung below."""
     resolution, below, *coarser = how.resolutions(scales, rtol, level)
     (curve, stage), settings = discretise(resolution, 0), {"kernel": how.name, **asdict(resolution)}
     if not level:
         return Rung(curve, (), settings)
-    twin, before = discretise(twin_of(below), 1)[1], discretise(coarser[0], 1)[1] if coarser else None
-    rule = ErrorRule(how.left * doubt, (GRIDS.before, 1.0), steps=scales.steps)
+    twin, before = discretise(twin_of(below), 1)[1], discretise(coarser[0], 0)[1] if coarser else None
+    rule = ErrorRule(how.left, (GRIDS.before, 1.0), steps=scales.steps)
     return Rung(curve, (stage,), settings, twin, before, rule)

@@ -48,11 +48,14 @@ class ImageSettings:
     shallowest: float = 1.0  # thicknesses of the first stratum at which the first image is
     deepest: float = 60.0  # thicknesses of all strata at which the last image is
     deeper: tuple[float, ...] = (1.0, 10.0, 100.0, 1e3)  # times as deep they go if need be: stiff strata spread a load
-    spacing: float = 1.14  # ratio of neighbouring depths: with 1.2 the fit is a decade worse, with 1.1 no better
+    spacings: tuple[float, float] = (
+        1.14,
+        1.1,
+    )  # ratio of neighbouring depths, and a twin's: with 1.2 the fit is a decade worse
     close: float = 0.14  # most logarithm of the ratio of lengths between which images are interpolated
     wide: float = 3.5  # most logarithm of the ratio of contact radii between which a remainder is one polynomial
     samples: int = 500  # wave numbers at which S is fitted
-    fitted: float = 3e-8  # misfit, in parts of the largest S or 1, at which no deeper images are tried
+    fitted: float = 3e-8  # misfit at which no deeper images are tried
     at_worst: float = 1e-6  # misfit at which strata are refused
     near: float = 0.5  # lengths of a long cell around it where nodes need a rule of their own
     adjacent: tuple[int, int] = (24, 2)  # points and grading of the rule next to a long cell, as of `graded_rule`
@@ -131,7 +134,7 @@ def _mean(a: Complex, b: Complex) -> Complex:
     return (a + b) / 2
 
 
-def images_of(body: LayeredBody, spacing: float = HOW.spacing) -> Images:
+def images_of(body: LayeredBody, spacing: float = HOW.spacings[0]) -> Images:
     """Fit the images of a layered body at depths of a given ratio of neighbours; another one errs otherwise.
 
     InputError if the body is not made of layers, NotConverged if the strata differ so much in stiffness or thickness
@@ -148,7 +151,7 @@ def images_of(body: LayeredBody, spacing: float = HOW.spacing) -> Images:
             break
         depths = _depths(HOW.shallowest * thin, HOW.deepest * all_of_it * deeper, spacing, tilted=tilted)
         fits.append(_fitted(k, wanted, depths))
-        if fits[-1][0] <= HOW.fitted * largest:
+        if fits[-1][0] <= HOW.fitted:
             break
     misfit, depths, strengths = min(fits, key=lambda fit: fit[0])
     if misfit > HOW.at_worst * largest:

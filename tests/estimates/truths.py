@@ -24,6 +24,7 @@ from halfspace.equilibrium.charts import moved, placed, trace_charts
 from halfspace.equilibrium.conditions import FOLD, Located
 from halfspace.equilibrium.events import is_event, numbered
 from halfspace.equilibrium.search import brackets_of, energy_released, find_events, with_care
+from halfspace.errors import required
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
@@ -65,7 +66,7 @@ def relocated(state, stages):
 
 
 def on(stage, state):
-    return {name: moved(event, stage(event).problem) for name, event in state.items()}
+    return {name: required(moved(event, stage(event).problem)) for name, event in state.items()}
 
 
 def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
@@ -162,5 +163,5 @@ def of_state(state):
 def points_on(stage, path, places):
     """Points of a curve at some places, solved for on a stage in the plane across the path."""
     points = [Located(FOLD, part.problem, point, 1.0) for part in path.finest_curve.segments for point in part.points]
-    found = {k: placed(stage, points[k]).point.observables for k in places}
+    found = {k: required(placed(stage, points[k])).point.observables for k in places}
     return {f"point {k} {q}": float(v) for k, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}
