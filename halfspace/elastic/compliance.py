@@ -221,10 +221,13 @@ class ElasticOperator(Valued, Operator):
         In the squares of the radii the nodes lie near to it. A polynomial in the radius, which is not even, misses the
         value there by the same on grids that differ in all else.
         """
-        nodes, row = self.cell_nodes[0], np.zeros(self.radii.size)
-        squares = self._places[nodes] ** 2
-        row[nodes] = lagrange(squares, barycentric(squares), 0.0)[0]
+        row = np.zeros(self.radii.size)
+        row[self.cell_nodes[0]] = self.near_axis(np.zeros(1))[0]
         return row
+
+    def near_axis(self, radii: Array) -> Array:
+        """Rows (n, k) that interpolate values at the nodes of the first cell at radii in it, in squares of places."""
+        return grid.polynomial(self._places[self.cell_nodes[0]] ** 2, self.coordinate.along(radii) ** 2)
 
     @cached_property
     def _places(self) -> Array:

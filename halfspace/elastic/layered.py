@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from functools import partial
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -30,7 +30,7 @@ from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
 from halfspace.elastic.grid import gauss_legendre, polynomial
 from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
-from halfspace.elastic.operators import NearlyHomogeneous, Part, chebyshev_lengths, nodes_beside
+from halfspace.elastic.operators import NearlyHomogeneous, Part, Piecewise, chebyshev_lengths, nodes_beside
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
@@ -54,6 +54,7 @@ class ImageSettings:
     )  # ratio of neighbouring depths, and a twin's: with 1.2 the fit is a decade worse
     close: float = 0.14  # most logarithm of the ratio of lengths between which images are interpolated
     wide: float = 3.5  # most logarithm of the ratio of contact radii between which a remainder is one polynomial
+    wider: float = 10.0  # times the widest contact that is planned for, up to which remainders are known
     samples: int = 500  # wave numbers at which S is fitted
     fitted: float = 3e-8  # misfit at which no deeper images are tried
     at_worst: float = 1e-6  # misfit at which strata are refused
@@ -257,23 +258,10 @@ def nearly_homogeneous(
     ratio = float((widest / least) ** (1 / np.ceil(np.log(widest / least) / HOW.wide)))
     pole = np.pi / (4 if images.depths.imag.any() else 2) / (np.log(ratio) / 2)
     degree = int(np.ceil(np.log(2 / left) / np.arcsinh(pole)))
-    make = partial(_remainder, images, unit, until - widest, widest, degree, left)
-    return NearlyHomogeneous(unit, least, ratio, make)
-
-
-def _remainder(
-    images: Images,
-    unit: ElasticOperator,
-    beyond: float,
-    widest: float,
-    degree: int,
-    left: float,
-    low: float,
-    high: float,
-) -> Part:
-    """Images between two contact radii, integrated up to a radius beyond the wider one, or beyond the widest."""
-    radii = chebyshev_lengths(low, high, degree)
-    return Part(radii, partial(_in_units, images, unit, max(high, widest) + beyond, left, radii))
+    ends = least * ratio ** np.arange(np.ceil(np.log(HOW.wider * widest / least) / np.log(ratio)) + 1)
+    lengths = [chebyshev_lengths(*part, degree) for part in pairwise(ends.tolist())]
+    parts = [Part(a, partial(_in_units, images, unit, max(a[-1], widest) + until - widest, left, a)) for a in lengths]
+    return NearlyHomogeneous(unit, Piecewise(ends, parts))
 
 
 def _in_units(images: Images, unit: ElasticOperator, until: float, left: float, radii: Array) -> Array:

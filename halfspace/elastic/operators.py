@@ -95,50 +95,39 @@ class Piecewise(Valued):
 class NearlyHomogeneous(Homogeneous):
     """A homogeneous body and the remainder of another one, on a grid that is scaled with the contact.
 
-    The singular part of the kernel is that of the homogeneous body: only what is smooth is interpolated, between
-    contact radii from the least, in beta, to `ratio` times that, from there to `ratio` times that, and so on. `make`
-    gives the remainder, over the radius and the nodes' weights, between the two radii of such a part, when a contact
-    is first so wide: a polynomial tells nothing beyond its ends.
+    The singular part of the kernel is that of the homogeneous body: only what is smooth, the remainder, over the radius
+    and the nodes' weights, is interpolated between contact radii in beta.
     """
 
-    least: float
-    ratio: float
-    make: Callable[[float, float], Part]
+    remainder: Piecewise
 
     @property
     def least_radius(self) -> float:
         """Least contact radius that it serves."""
-        return self.least
+        return float(self.remainder.ends[0])
+
+    @property
+    def widest_radius(self) -> float:
+        """Widest contact radius that it serves."""
+        return float(self.remainder.ends[-1])
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
         return STORE.get(self, "at", partial(self._made, scale), scale)
 
     def _made(self, scale: float) -> ElasticOperator:
-        return replace(self.unit, compliance=self.unit.compliance + self._remainder(scale, 0)).scaled(scale)
+        compliance = self.unit.compliance + self.remainder.at(scale, 0) * self.unit.weights
+        return replace(self.unit, compliance=compliance).scaled(scale)
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
         radii, weights, _ = super().rates(scale, pressure)
-        rate = self._remainder(scale, 1) @ pressure
+        rate = self.remainder.at(scale, 1) @ (self.unit.weights * pressure)
         return radii, weights, self.at(scale).compliance @ pressure / scale + rate
 
     def root(self, scale: float) -> Array:
         """Square root of the balanced compliance."""
         return self.at(scale).compliance_root
-
-    def _remainder(self, scale: float, derivative: int) -> Array:
-        """Remainder at a contact radius, or its derivative by the logarithm of that."""
-        number = max(int(np.log(scale / self.least) // np.log(self.ratio)), 0)
-        if number not in self._parts:
-            ends = self.least * self.ratio ** np.array([number, number + 1.0])
-            self._parts[number] = self.make(*ends.tolist())
-        return self._parts[number].at(scale, derivative) * self.unit.weights
-
-    @cached_property
-    def _parts(self) -> dict[int, Part]:
-        """Remainders made so far, by their number from the least radius on."""
-        return {}
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -18,7 +18,6 @@ from halfspace.equilibrium.conditions import Located, nearest, relocate, same_pl
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import (
-    WHOLE_BODY,
     Metric,
     Point,
     Segment,
@@ -95,8 +94,8 @@ def trace_charts(
         first = problem.interface.scales.separated_approach - 10
         point = _hand_over(segments[-1], problem, metric) if segments else separated(problem, first, metric)
         ended = _ended(to_load, problem.interface.profile.end)
-        stop, pace = _left(chart, ended), steps or _pace(problem, segments)
-        segments.append(Segment(problem, tuple(required(follow(problem, required(point), metric, stop, steps=pace)))))
+        points = follow(problem, required(point), metric, _left(chart, ended), steps=steps or _pace(segments))
+        segments.append(Segment(problem, tuple(required(points))))
         if ended(segments[-1].points[-1]):
             break
     return tuple(segments)
@@ -113,21 +112,11 @@ def _left(chart: Chart, ended: Callable[[Point], bool]) -> Callable[[Point], boo
     return lambda point: ended(point) or chart.left(chart.problem, point)
 
 
-def _pace(problem: Traceable, before: Sequence[Segment]) -> Steps:
-    """Steps to begin with: far apart, where the path is straight, the longest; else as the last on a grid of its kind.
-
-    On a body of whose unknowns the surface is but a part, half as long.
-    """
-    whole = problem.interface is not problem
-    usual = WHOLE_BODY if whole else Steps()
-    if not before:
-        return replace(usual, first=usual.longest)
-    last = before[-1].points[-2:]
-    step = last[-1].arclength - last[0].arclength
-    if whole:
-        return replace(usual, first=step / 2 or usual.first)
-    alike = problem.interface.follows_contact == before[-1].problem.interface.follows_contact
-    return replace(usual, first=step) if alike and step else usual
+def _pace(before: Sequence[Segment]) -> Steps:
+    """Steps to begin with: far apart, where the path is straight, the longest; else as the last one."""
+    last = [point.arclength for segment in before[-1:] for point in segment.points[-2:]]
+    usual = Steps()
+    return replace(usual, first=(last[-1] - last[0] or usual.first) if last else usual.longest)
 
 
 def undeformed_radius(problem: Traceable, point: Point) -> float:

@@ -23,7 +23,6 @@ from numpy.polynomial.legendre import legvander
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
 from halfspace.elastic.compliance import ElasticOperator, Operator
-from halfspace.elastic.grid import polynomial
 from halfspace.equilibrium.acting import Acting
 from halfspace.errors import ContactTooWide, GridTooCoarse
 from halfspace.laws import LENNARD_JONES, Law
@@ -209,12 +208,11 @@ class ContactProblem(Valued):
     def near_axis(self, x: Array, radii: Array) -> Array:
         """Deflection in eps less the approach at radii (n,) in the cell on the axis: the gap at 0.
 
-        By the polynomial through its nodes in the squares of the radii, as the gap on the axis: one in the radii errs
-        by far more between nodes than at them.
+        By the polynomial through its nodes in the squares of their places, as the gap on the axis: one in the radii
+        errs by far more between nodes than at them.
         """
         body = self.operator_at(x)
-        nodes = body.cell_nodes[0]
-        return np.asarray(polynomial(body.radii[nodes] ** 2, radii**2) @ self.deflection(x)[nodes] - x[-2])
+        return np.asarray(body.near_axis(radii) @ self.deflection(x)[body.cell_nodes[0]] - x[-2])
 
     def ripples(self, x: Array) -> Array:
         """What the deflection's polynomials end with on the axis, in eps, and at the contact edge, in beta, (2,).

@@ -107,9 +107,9 @@ class Steps:
     """Lengths of the continuation's steps, in arclength, and what they adapt to.
 
     A step below `shortest` ends the path with an error. `turn` is the largest angle between the tangents at a step's
-    two ends, in radians. `iterations` are the Newton steps allowed for one continuation step, `usual` those that one of
-    the right length takes, `astray` is the relative size of the first of them then, and `contraction` the part of the
-    Newton step two before that one may have.
+    two ends, in radians. `iterations` are the Newton steps allowed for one continuation step, `astray` is the relative
+    size of the first of them if the step is of the right length, and `contraction` the part of the Newton step two
+    before that one may have.
     """
 
     first: float = 0.05
@@ -117,13 +117,8 @@ class Steps:
     shortest: float = 1e-7
     turn: float = 0.35
     iterations: int = 8
-    usual: float = np.inf
     astray: float = 0.02
     contraction: float = 0.5
-
-
-# Where a Newton step is worth many of the surface's alone.
-WHOLE_BODY = Steps(iterations=10, usual=6, astray=np.inf)
 
 
 def make_point(
@@ -204,7 +199,7 @@ def follow(
     metric: Metric,
     stop: Callable[[Point], bool],
     *,
-    steps: Steps | None = None,
+    steps: Steps,
     max_points: int = 2000,
 ) -> list[Point] | Unsolved:
     """Continue the path from a point to the first for which `stop` holds, in steps adapted to its curvature.
@@ -213,7 +208,6 @@ def follow(
     below the shortest allowed, or the points run out; GridTooCoarse if the contact edge comes to a place where the grid
     is too coarse for the spike of tension there.
     """
-    steps = steps or (Steps() if problem.interface is problem else WHOLE_BODY)
     points, step = [start], steps.first
     while len(points) < max_points:
         new = _advance(problem, points, step, metric, steps)
@@ -319,9 +313,8 @@ def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -
     """
     by_turn = steps.turn / max(_turn(points[-2], points[-1], metric), 1e-6)
     by_astray = math.sqrt(math.sqrt(steps.astray / max(points[-1].astray, 1e-12)))
-    by_effort = min(steps.usual / points[-1].iterations, by_astray)
     wide = (1 + float(points[-1].observables[CENTRAL_GAP])) / (PATH.ratio * metric.central_gap)
-    return min(step * min(max(by_turn, 0.3), max(by_effort, 0.3), 2.0), steps.longest * max(1.0, wide))
+    return min(step * min(max(by_turn, 0.3), max(by_astray, 0.3), 2.0), steps.longest * max(1.0, wide))
 
 
 def loaded_to(load: float) -> Callable[[Point], bool]:
