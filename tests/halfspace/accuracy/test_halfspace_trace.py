@@ -172,11 +172,11 @@ def test_what_loads_slowly_is_loaded_if_needed(code, unneeded):
 @pytest.mark.parametrize(
     ("tabor", "law", "points", "factorisations"),
     [
-        (0.05, LENNARD_JONES, 35, 120),
+        (0.05, LENNARD_JONES, 35, 125),
         (1, LENNARD_JONES, 35, 155),
         (50, LENNARD_JONES, 75, 365),
         (300, LENNARD_JONES, 95, 400),
-        (1, Dugdale(0.1), 55, 250),
+        (1, Dugdale(0.1), 55, 260),
     ],
 )
 def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, points, factorisations):

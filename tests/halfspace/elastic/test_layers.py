@@ -174,7 +174,7 @@ def test_a_stiff_coating_is_known_between_its_radii():
     for body in (Coated(0.5, 100.0), Coated(0.5, 10.0), Coated(0.5, 0.1)):
         scales, images = Scales(3.0, body=body), images_of(body)
         operator = layered_charts(scales, images, resolution_for(scales, 1e-3))[1].problem.operator
-        known = operator.make(operator.least, operator.least * operator.ratio).lengths
+        known = operator.remainder.parts[0].lengths
         for a in np.sqrt(known[1:] * known[:-1])[::4]:
             here = operator.at(a)
             alone = replace(here, compliance=operator.unit.scaled(a).compliance)
