@@ -105,12 +105,15 @@ class Lying:
         return lied(found, self.lie) if name in ("approach", "load") else found
 
     def at(self, **asked):
+        """Return states at what is asked for, elsewhere."""
         return lied(self.path.at(**asked), self.lie)
 
     def states(self, condition):
+        """Return states that meet a condition, elsewhere."""
         return [dataclasses.replace(s, point=lied(s.point, self.lie)) for s in self.path.states(condition)]
 
     def resampled(self, points):
+        """Return another curve."""
         return lied(self.path.resampled(points), self.lie)
 
 

@@ -122,7 +122,7 @@ def test_one_number_outside_its_limits_is_refused(name, data):
     require_refused(lambda: halfspace.trace(**(good | {name: value})), name, value)
 
 
-@over_inputs(20)
+@over_inputs(12)
 @given(tabor=tabors, factor=st.floats(1.001, 3), rtol=rtols, to_load=loads)
 @example(tabor=0.6972, factor=0.6973 / 0.6972, rtol=1e-2, to_load=5.0)  # about the critical value
 @example(tabor=3.9743, factor=1.001, rtol=1e-2, to_load=5.0)  # where a second pair of folds is born

@@ -214,7 +214,7 @@ def _judge(numbers, within=0.99, close=0.5):
 def test_estimates_hold_the_truth_between_points_and_at_them():
     """Against solutions a hundred times tighter; in the far field estimates hold by far, so that they need but hold."""
     rng, at_points, between = np.random.default_rng(7), [], []
-    for tabor in (0.3, 1.0, 2.0, 5.0):
+    for tabor in (0.3, 2.0, 5.0):
         for rtol in (1e-2, 1e-5):
             path, truth = halfspace.trace(tabor, rtol=rtol), halfspace.trace(tabor, rtol=rtol / 100)
             at_points += _plane_differences(path, truth)
