@@ -231,22 +231,14 @@ class FinestCurve(Valued):
         for problem, a, b in (bridge for before, after in pairwise(known) for bridge in self._bridges(before, after)):
             if condition.of(a) * condition.of(b) <= 0:
                 return problem, *self._met(problem, a, b, condition)
-        nearest = [(part, min(part.points, key=lambda p: abs(condition.of(p)))) for part in parts]
-        nearest.sort(key=lambda one: (self._is_left_behind(one[0].problem), abs(condition.of(one[1]))))
-        gaps = [self.metric.distance(a.points[-1], b.points[0]) for a, b in pairwise(parts)]
-        reach = max([LOCATE.nearby, *gaps])
-        for part, near in nearest:
-            found = self._beside(part.problem, near, condition, reach)
-            if found:
-                return part.problem, found, 0.0
-        raise NotConverged(f"no state at {value:.6g} is found between two grids; take a smaller rtol")
-
-    def _beside(self, problem: Traceable, near: Point, condition: Condition, reach: float) -> Point | None:
-        """State that meets a condition in reach of a point: Newton's method may lead to another branch, farther off."""
-        control = newton.Control(condition.weights, condition.value)
-        s = near.arclength + abs(condition.of(near))
-        point = solved_point(problem, near.x, control, self.metric, self.metric.weights * near.rates, s)
-        return point if point and self.metric.distance(point, near) <= reach else None
+        # Or in the hole, no wider than their errors, between two grids of which one hands over to the next.
+        points = [(part.problem, point) for part in known for point in part.points]
+        problem, near = min(points, key=lambda one: abs(condition.of(one[1])))
+        control = newton.Control(condition.weights, value)
+        found = solved_point(problem, near.x, control, self.metric, self.metric.weights * near.rates, near.arclength)
+        if not found or self.metric.distance(found, near) > LOCATE.nearby:  # it may be on another branch
+            raise NotConverged(f"no state at {value:.6g} is found between two grids; take a smaller rtol")
+        return problem, found, 0.0
 
     def _met(self, problem: Traceable, a: Point, b: Point, condition: Condition) -> tuple[Point, float]:
         """State between two points that meets a condition, and the observable's second derivative there."""
