@@ -107,7 +107,7 @@ def from_chart(problem: Traceable, unknowns: int) -> Solved:
     segments = trace_charts([Chart(problem, unknowns)])
     found = find_events(segments)
     values = {"pull_off": float(found["pull_off"].point.observables[LOAD])}
-    if (loss := energy_lost(segments, found)) is not None:
+    if loss := energy_lost(segments):
         values |= {"jump_on": float(found["jump_on"].point.observables[APPROACH]), "hysteresis": loss}
     return unknowns, values
 

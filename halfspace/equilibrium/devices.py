@@ -14,9 +14,9 @@ equals the work of the base round the loop, as d(E + W^2/2k) = W db.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from types import MappingProxyType
+from functools import partial
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from halfspace.equilibrium.charts import Stage, metric_for, separated, settled, 
 from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import FOLDS, ErrorRule, Event, Tolerance, approach_scale, estimate_event
+from halfspace.equilibrium.events import ErrorRule, Event, Tolerance, approach_scale, estimate_event
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Segment, solved_point
 from halfspace.equilibrium.search import energy_size, states
@@ -107,12 +107,11 @@ class Cycle:
 
 @dataclass(frozen=True)
 class JumpStates:
-    """Take-off and landing of one jump, on or off, on one discretisation; the take-off on others, where it is known."""
+    """Take-off and landing of one jump, on or off, on one discretisation."""
 
     take_off: Located
     landing: Located
     on: bool
-    known: tuple[Located, ...] = ()
 
     def energy(self, compliance: float) -> float:
         """Energy set free, that of the spring included."""
@@ -161,43 +160,22 @@ def staged_jumps(path: EquilibriumPath, stiffness: float = math.inf) -> list[Sta
     """Jumps of a `cycle`, those on and then those off, on all the discretisations that their errors are told from."""
     if math.isinf(stiffness) and not path.jumps:
         return []
-    # Only fixed grips jump at the curve's own folds.
-    stages = (*path.stages, path.on_twin) if math.isinf(stiffness) else ()
-    known = {name: tuple(stage[name] for stage in stages if name in stage) for name in FOLDS}
-    rough = jumps(reaching(path, stiffness).segments, 1 / stiffness, known)
-    return [_staged(states, path, 1 / stiffness) for states in rough or ()]
+    rough, again = jumps(reaching(path, stiffness).segments, 1 / stiffness), partial(_refined, 1 / stiffness)
+    return [StagedJump(required(path.ladder.chains(required(again(path.finest, one)), again))) for one in rough]
 
 
-def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> float | None:
-    """Energy lost in a cycle under fixed grips on one discretisation, or None if the curve does not fold.
-
-    Given are the traced curve and its events, from `halfspace.equilibrium.search.find_events`.
-    """
-    if "jump_on" not in found:
-        return None
-    states = jumps(segments, 0.0)
-    return None if states is None else sum(jump.energy(0.0) for jump in states)
+def energy_lost(segments: Sequence[Segment]) -> float:
+    """Energy lost in a cycle under fixed grips on one discretisation, 0 if the traced curve does not fold."""
+    return sum((jump.energy(0.0) for jump in jumps(segments, 0.0)), 0.0)
 
 
-def jumps(
-    segments: Sequence[Segment], compliance: float, known: Mapping[str, tuple[Located, ...]] = MappingProxyType({})
-) -> tuple[JumpStates, ...] | None:
-    """Jumps on in their order, then jumps off, with compliance 1/k, on the discretisation of the curve itself.
-
-    The outermost folds of the base may be known by name, on this discretisation and others.
-    """
-    base = Condition(APPROACH, stationary=True, compliance=compliance)
-    folds = _in_order(segments, base, [state for states in known.values() for state in states])
+def jumps(segments: Sequence[Segment], compliance: float) -> list[JumpStates]:
+    """Jumps on in their order, then jumps off, with compliance 1/k, on the discretisation of the curve itself."""
+    folds = _in_order(segments, Condition(APPROACH, stationary=True, compliance=compliance))
     if not folds:
-        return None
+        return []
     segments, folds = _cut(segments, folds)
-    ways = _on(segments, folds, compliance), _off(segments, folds, compliance)
-    named = zip(ways, (known.get(name, ()) for name in FOLDS), strict=True)
-    return tuple(
-        replace(states, known=() if number else of_first)
-        for way, of_first in named
-        for number, states in enumerate(way)
-    )
+    return [*_on(segments, folds, compliance), *_off(segments, folds, compliance)]
 
 
 @dataclass(frozen=True)
@@ -214,12 +192,12 @@ class _Placed:
         return base.rate(point) * point.rates[APPROACH] > 0 and not self.state.problem.negative_directions(point.x)
 
 
-def _in_order(segments: Sequence[Segment], condition: Condition, known: Sequence[Located] = ()) -> list[_Placed]:
+def _in_order(segments: Sequence[Segment], condition: Condition) -> list[_Placed]:
     """States of a curve that meet a condition, in order along it."""
     return [
         _Placed((number, state.point.arclength), state)
         for number, segment in enumerate(segments)
-        for state in states([segment], condition, known)
+        for state in states([segment], condition)
     ]
 
 
@@ -293,35 +271,23 @@ def landing_of(take_off: Located, problem: Traceable, start: Array, compliance: 
     return point and Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
 
 
-def _refined(states: JumpStates, stage: Stage, compliance: float) -> JumpStates | Unsolved:
+def _refined(compliance: float, stage: Stage, states: JumpStates) -> JumpStates | Unsolved:
     """Both states of a jump on another discretisation."""
-
-    def leave(state: Located, problem: Traceable) -> Located | Unsolved:
-        wide = _wide_enough(state, problem)
-        there = next((known for known in states.known if known.problem is wide), None)
-        return there or stage.moved(state, wide)
+    fold = settled(states.take_off, stage, lambda state, problem: stage.moved(state, _wide_enough(state, problem)))
+    if not fold:
+        return fold
+    take_off: Located = fold
 
     def land(state: Located, problem: Traceable) -> Located | Unsolved:
         wide = _wide_enough(state, problem)
-        return landing_of(states.take_off, wide, transfer(state.problem, state.point.x, wide), compliance)
+        return landing_of(take_off, wide, transfer(state.problem, state.point.x, wide), compliance)
 
-    fold = settled(states.take_off, stage, leave)
-    states = replace(states, take_off=fold) if fold else states
-    landing = fold and settled(states.landing, stage, land)
-    return landing and replace(states, landing=landing)
+    landing = settled(states.landing, stage, land)
+    return landing and JumpStates(take_off, landing, states.on)
 
 
 def _wide_enough(state: Located, problem: Traceable) -> Traceable:
     return widened(problem, float(state.point.observables[APPROACH]))
-
-
-def _staged(rough: JumpStates, path: EquilibriumPath, compliance: float) -> StagedJump:
-    """Jump on the finest discretisation of the path's ladder, and on the others."""
-
-    def again(stage: Stage, states: JumpStates) -> JumpStates | Unsolved:
-        return _refined(states, stage, compliance)
-
-    return StagedJump(required(path.ladder.chains(required(again(path.finest, rough)), again)))
 
 
 def _jump(staged: StagedJump, path: EquilibriumPath, compliance: float) -> Jump:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 from typing import NoReturn
@@ -50,35 +50,18 @@ class SearchSettings:
 FIND = SearchSettings()
 
 
-def states(segments: Sequence[Segment], condition: Condition, known: Iterable[Located] = ()) -> list[Located]:
-    """Every state of a traced curve that meets a condition, in order; those known are not solved for again."""
-    return [state for found in states_in(segments, condition, known) for state in found]
-
-
-def states_in(segments: Sequence[Segment], condition: Condition, known: Iterable[Located] = ()) -> list[list[Located]]:
-    """Those of each segment."""
-    return [
-        [state for bracket in found for state in _within(bracket, known) or required(with_care(bracket, condition))]
-        for found in _brackets_in(segments, condition)
-    ]
-
-
-def _within(bracket: Bracket, known: Iterable[Located]) -> list[Located]:
-    problem, a, b = bracket
-    return [s for s in known if s.problem is problem and a.arclength <= s.point.arclength <= b.arclength]
+def states(segments: Sequence[Segment], condition: Condition) -> list[Located]:
+    """Every state of a traced curve that meets a condition, in order."""
+    return [state for one in brackets_of(segments, condition) for state in required(with_care(one, condition))]
 
 
 def brackets_of(segments: Sequence[Segment], condition: Condition) -> list[Bracket]:
     """Discretisation and pair of points for every state that meets a condition, in order."""
-    return [bracket for found in _brackets_in(segments, condition) for bracket in found]
-
-
-def _brackets_in(segments: Sequence[Segment], condition: Condition) -> list[list[Bracket]]:
     metric = metric_for(segments[0].problem)
-    along = [_to_hand_over(s, after, condition, metric) for s, after in zip_longest(segments, segments[1:])]
     return [
-        [(s.problem, a, b) for a, b in brackets(s.problem, points, metric, condition)]
-        for s, points in zip(segments, along, strict=True)
+        (segment.problem, a, b)
+        for segment, after in zip_longest(segments, segments[1:])
+        for a, b in brackets(segment.problem, _to_hand_over(segment, after, condition, metric), metric, condition)
     ]
 
 

@@ -16,7 +16,6 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.devices import cycle, energy_lost, jumps, reaching
-from halfspace.equilibrium.search import find_events
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 
@@ -63,9 +62,7 @@ def test_a_take_off_has_the_errors_of_the_event_that_it_is(path):
 
 
 def test_the_loss_on_one_grid_is_that_of_the_cycle(path):
-    assert energy_lost(path.segments, find_events(path.segments)) == pytest.approx(
-        cycle(path).energy_lost.value, rel=1e-5
-    )
+    assert energy_lost(path.segments) == pytest.approx(cycle(path).energy_lost.value, rel=1e-5)
 
 
 def test_a_contact_radius_is_known_as_the_gap_ripples():
