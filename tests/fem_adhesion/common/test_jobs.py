@@ -203,9 +203,8 @@ def started(folder, workers):
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-    """Address of a scheduler with two workers."""
-    for one in started(tmp_path_factory.mktemp("dask"), 2):
-        yield one.address
+    """A scheduler with two workers; the last test of the file ends it."""
+    yield from started(tmp_path_factory.mktemp("dask"), 2)
 
 
 @pytest.fixture
@@ -244,17 +243,9 @@ def test_workers_that_leave_later_are_said_to_be_missing(leaving, tmp_path, caps
 
 
 @needs_cluster
-def test_a_scheduler_that_has_gone_ends_the_work_in_one_line(leaving, tmp_path):
-    at_work = stream(marking, [str(tmp_path)], dask=leaving.address)
-    threading.Thread(target=lambda: (wait_until((tmp_path / "begun").exists), leaving.end(leaving.scheduler))).start()
-    with pytest.raises(InputError, match=r"^dask[^\n]*; start it and run the command again$"):
-        next(at_work)
-
-
-@needs_cluster
 def test_a_dask_cluster_does_the_work_and_hides_no_error(cluster, capsys):
     """It is found by host and port alone."""
-    address = cluster.removeprefix("tcp://")
+    address = cluster.address.removeprefix("tcp://")
     assert sorted(stream(square, range(20), dask=address)) == [(x, x * x) for x in range(20)]
     assert "no workers" not in capsys.readouterr().err
     with pytest.raises(ZeroDivisionError, match="item 0"):
@@ -264,12 +255,20 @@ def test_a_dask_cluster_does_the_work_and_hides_no_error(cluster, capsys):
 @needs_cluster
 def test_an_item_whose_cluster_worker_dies_goes_to_another(cluster, tmp_path):
     items = [(x, 1, str(tmp_path)) for x in range(6)]
-    assert sorted(result for _, result in stream(deadly, items, dask=cluster)) == [x * x for x in range(6)]
+    assert sorted(result for _, result in stream(deadly, items, dask=cluster.address)) == [x * x for x in range(6)]
     assert len(list(tmp_path.iterdir())) == 1
 
 
 @needs_cluster
 def test_an_item_that_kills_every_cluster_worker_is_given_up(cluster, tmp_path):
-    results = {item[0]: r for item, r in stream(deadly, [(x, 99, str(tmp_path)) for x in (2, 3)], dask=cluster)}
+    results = {item[0]: r for item, r in stream(deadly, [(x, 99, str(tmp_path)) for x in (2, 3)], dask=cluster.address)}
     assert results[2] == 4
     assert "its worker died" in results[3].reason
+
+
+@needs_cluster
+def test_a_scheduler_that_has_gone_ends_the_work_in_one_line(cluster, tmp_path):
+    at_work = stream(marking, [str(tmp_path)], dask=cluster.address)
+    threading.Thread(target=lambda: (wait_until((tmp_path / "begun").exists), cluster.end(cluster.scheduler))).start()
+    with pytest.raises(InputError, match=r"^dask[^\n]*; start it and run the command again$"):
+        next(at_work)
