@@ -26,10 +26,10 @@ and deviations of approaches are relative to eps and the range of the approaches
 From a call to an event with its error: `trace` checks what is asked and says how the contact is discretised.
 `half_space_charts`, or its like, makes the charts: one on a grid fine on the axis, one on a grid that follows the edge.
 `climb` goes up the ladder of rungs until the tolerance is met. `trace_charts` traces the curve on the lowest rung.
-`find_events` finds which events it has and solves for each there. `on_all` solves for them again on a finer rung and on
-its twin of other cells. `turning_point` is Newton's method for a fold or an extremum, `solve` that for a given value.
-`errors_of` makes error estimates of the changes from rung to rung. `Tolerance.missed` says whether to climb on.
-`confirmed` decides which turns of the curve every rung has, for events and branches alike.
+`find_events` finds which events it has and solves for each there. `chains_of` solves for each again on a finer rung, on
+a coarser grid and on a twin of other cells. `turning_point` is Newton's method for a fold or an extremum, `attempt`
+that for a given value. `errors_of` makes error estimates of the changes from rung to rung. `Tolerance.missed` says
+whether to climb on. `confirmed` decides which turns of the curve every rung has, for events and branches alike.
 
 Events: ``pull_off`` is the deepest minimum of the load; ``jump_on`` and ``jump_off`` are the folds that an experiment
 under fixed grips meets when it comes from separation and from contact; ``zero_load`` lies on the contact branch. Each

@@ -23,7 +23,6 @@ from halfspace.equilibrium.path import (
     Segment,
     Steps,
     follow,
-    loaded_to,
     solved_point,
 )
 from halfspace.errors import Unsolved, required
@@ -103,8 +102,9 @@ def trace_charts(
 
 def _ended(to_load: float, body: float) -> Callable[[Point], bool]:
     """Stop under a compressive load, or where the body is drawn flat: its contact is wider, and the load falls."""
-    loaded = loaded_to(to_load)
-    return lambda p: loaded(p) or bool(p.observables[CONTACT_RADIUS] > body and p.rates[LOAD] < 0)
+    return lambda p: bool(
+        p.observables[LOAD] >= to_load or (p.observables[CONTACT_RADIUS] > body and p.rates[LOAD] < 0)
+    )
 
 
 def _left(chart: Chart, ended: Callable[[Point], bool]) -> Callable[[Point], bool]:

@@ -217,11 +217,8 @@ class EquilibriumPath(Valued):
     @cached_property
     def finest_curve(self) -> FinestCurve:
         """The points solved for on the finest discretisation, when they are first asked for."""
-        return finest_curve(self.segments, self.ladder, self.metric, self._folds)
-
-    def _folds(self) -> list[Located]:
-        """Folds on the finest discretisation, those between the jumps solved for by now."""
-        return [fold for name, fold in self.stages[-1].items() if is_fold(name)]
+        folds = [fold for name, fold in self.stages[-1].items() if is_fold(name)]
+        return finest_curve(self.segments, self.ladder, self.metric, folds)
 
     def at(
         self,

@@ -315,8 +315,3 @@ def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -
     by_astray = math.sqrt(math.sqrt(steps.astray / max(points[-1].astray, 1e-12)))
     wide = (1 + float(points[-1].observables[CENTRAL_GAP])) / (PATH.ratio * metric.central_gap)
     return min(step * min(max(by_turn, 0.3), max(by_astray, 0.3), 2.0), steps.longest * max(1.0, wide))
-
-
-def loaded_to(load: float) -> Callable[[Point], bool]:
-    """Stop where the contact bears a load in R dgamma, a compressive one: there is but one place."""
-    return lambda point: bool(point.observables[LOAD] >= load)

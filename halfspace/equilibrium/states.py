@@ -126,7 +126,7 @@ class FinestCurve(Valued):
     traced: tuple[Segment, ...]
     ladder: Ladder
     metric: Metric
-    folds: Callable[[], Sequence[Located]]
+    folds: Sequence[Located]
     left_behind: tuple[Traceable, ...] = ()
 
     @cached_property
@@ -145,15 +145,10 @@ class FinestCurve(Valued):
 
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Range of a coordinate on each of its branches, by name."""
-        ends = [part.points[place].observables for part, place in self._ends(coordinate)]
-        values = [float(end[COORDINATES[coordinate][0]]) for end in ends]
-        pairs = zip(values[::2], values[1::2], strict=True)
-        return {name: (min(pair), max(pair)) for name, pair in zip(self.parts(coordinate), pairs, strict=True)}
-
-    def _ends(self, coordinate: str) -> Iterator[tuple[Segment, int]]:
-        for parts in self.parts(coordinate).values():
-            yield parts[0], 0
-            yield parts[-1], -1
+        k, parts = COORDINATES[coordinate][0], self.parts(coordinate)
+        ends = {name: (part[0].points[0], part[-1].points[-1]) for name, part in parts.items()}
+        values = {name: sorted(float(point.observables[k]) for point in pair) for name, pair in ends.items()}
+        return {name: (low, high) for name, (low, high) in values.items()}
 
     def parts(self, coordinate: str) -> Mapping[str, Sequence[Segment]]:
         """Parts of the curve along which a coordinate goes in one direction, by name."""
@@ -172,7 +167,7 @@ class FinestCurve(Valued):
         See `halfspace.equilibrium.search.confirmed`.
         """
         if condition == FOLD:
-            return list(self.folds())
+            return list(self.folds)
         if not self.ladder.told:
             return [turn for _, turn in turns(self.traced, condition) if turn]
         return [chains[0][-1] for chains in confirmed(turns(self.traced, condition), self._again)[0]]
@@ -323,9 +318,7 @@ def require_coordinate(name: str) -> str:
     return name
 
 
-def finest_curve(
-    segments: Sequence[Segment], ladder: Ladder, metric: Metric, folds: Callable[[], Sequence[Located]]
-) -> FinestCurve:
+def finest_curve(segments: Sequence[Segment], ladder: Ladder, metric: Metric, folds: Sequence[Located]) -> FinestCurve:
     """Solve for the points of a curve on the finest discretisation; without any the curve stays as it is.
 
     The segments are of the curve on any discretisation. A point that cannot be solved for there stays where it is.
