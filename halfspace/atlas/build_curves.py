@@ -90,7 +90,7 @@ def deviations(tabor: float, curve: Curve, seed: int = 0) -> tuple[float, float]
     ours, theirs = curve.branches("approach"), path.branches("approach")
     for branch in ours.keys() & theirs.keys():
         low, high = max(ours[branch][0], theirs[branch][0]), min(ours[branch][1], theirs[branch][1])
-        approach = low + (high - low) * random.uniform(0.02, 0.98, 8)
+        approach = low + (high - low) * random.uniform(0.02, 0.98, 4)
         one, other = curve.at(approach=approach, branch=branch), path.at(approach=approach, branch=branch)
         for name, scale in (("load", 2 * np.pi), ("contact_radius", 1.0)):
             off = np.abs(getattr(one, name) - getattr(other, name))

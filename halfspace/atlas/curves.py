@@ -70,8 +70,7 @@ class Curve(Valued):
         The coordinate is "approach", "load" or "base", alpha* + W/stiffness, with the stiffness in R dgamma/eps.
         """
         way = _way(coordinate, stiffness)
-        ends = {name: self._along(way, np.array(part)) for name, part in self._parts(way).items()}
-        return {name: (float(values.min()), float(values.max())) for name, values in ends.items()}
+        return self._ranges(way, self._parts(way))
 
     def at(
         self,
@@ -105,7 +104,8 @@ class Curve(Valued):
             raise InputError(f"a state is asked for by {names}, limit: one of {', '.join(asked)}; give that one")
         ((coordinate, values),) = given
         way, wanted = _way(coordinate, stiffness), np.atleast_1d(values)
-        parts, ranges = self._parts(way), self.branches(coordinate, stiffness=stiffness)
+        parts = self._parts(way)
+        ranges = self._ranges(way, parts)
         allowed = {WHOLE if branch in ENDS and WHOLE in ranges else branch} if branch else ranges.keys()
         numbers, times = np.empty((8, *wanted.shape)), np.zeros(wanted.shape, dtype=int)
         for name in allowed & ranges.keys():
@@ -149,6 +149,11 @@ class Curve(Valued):
         at = _bisected(lambda trial: sign * self._rate(way, trial), places[turns], places[turns + 1])
         ends = [0.0, *at.tolist(), float(self._last)]
         return dict(zip(branch_names(len(ends) - 1), pairwise(ends), strict=True))
+
+    def _ranges(self, way: Array, parts: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+        """Least and largest value of a coordinate on each part."""
+        ends = {name: self._along(way, np.array(part)) for name, part in parts.items()}
+        return {name: (float(values.min()), float(values.max())) for name, values in ends.items()}
 
     def _along(self, way: Array, places: Array) -> Array:
         """Coordinate, weights (2,) of approach and load, at places (n,)."""
