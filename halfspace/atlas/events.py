@@ -87,10 +87,9 @@ def energy_released(tabor: ArrayLike, *, derivative: int = 0) -> Energy:
 
 def energy_lost(tabor: ArrayLike, *, derivative: int = 0) -> Energy:
     """Energy lost in a cycle under fixed grips, 0 where curves do not fold; parameters as of `pull_off`."""
-    jumps = jump_on(tabor, derivative=derivative), jump_off(tabor, derivative=derivative)
-    folds = np.asarray(tabor) >= birth_of_folds().value
-    sums = (sum(getattr(jump, name) for jump in jumps) for name in ("energy", "energy_error"))
-    return Energy(*(np.where(folds, both, 0.0)[()] for both in sums))
+    tabors = require_tabors(tabor)
+    on, off = (np.array(_number(f"{jump}.energy", tabors, derivative)) for jump in ("jump_on", "jump_off"))
+    return Energy(*np.where(tabors < birth_of_folds().value, 0.0, on + off))
 
 
 def _jump(name: str, tabor: ArrayLike, derivative: int) -> Jump:
