@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.conditions import Located, nearest, relocate, same_place
+from halfspace.equilibrium.conditions import Located, relocate, same_place
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import (
@@ -166,15 +166,12 @@ def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:
 
 
 def placed(stage: Stage, state: Located) -> Located | Unsolved:
-    """Solve for a state again on another discretisation, in the plane across the path there.
-
-    Where the paths wind too differently for the plane across one to meet the other, for the state nearest to it.
-    """
+    """Solve for a state again on another discretisation, in the plane across the path there."""
     problem, point = stage(state).problem, state.point
     if problem is state.problem:
         return state
     start, metric = transfer(state.problem, point.x, problem), metric_for(problem)
-    there = same_place(point, problem, start, metric) or nearest(point, problem, start, metric)
+    there = same_place(point, problem, start, metric)
     return there and replace(state, problem=problem, point=there)
 
 

@@ -15,7 +15,7 @@ from typing import final
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
+from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import (
     PATH,
@@ -51,8 +51,6 @@ class ConditionSettings:
     past: float = 1.5  # how far past it they aim, in secants
     longer: float = 3.0  # how many times the last a step may be
     widths: tuple[float, ...] = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
-    feet: int = 8  # steps to the foot of a perpendicular
-    aslant: float = 0.03  # of its length, what may be left along the path
 
 
 LOCATE = ConditionSettings()
@@ -347,23 +345,3 @@ def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -
     """Solve on another discretisation in the plane across the path at a given point."""
     across, weights = plane_across(point, metric)
     return solved_point(problem, start, across, metric, weights, point.arclength)
-
-
-def nearest(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point | Unsolved:
-    """State on another discretisation nearest to a point, from that at its contact radius, or at its central gap.
-
-    Unsolved if the path there winds too much to tell.
-    """
-    k = CENTRAL_GAP if np.isnan(point.observables[CONTACT_RADIUS]) else CONTACT_RADIUS
-    control = Control(np.eye(4)[k], float(point.observables[k]))
-    onwards = math.copysign(1.0, point.rates[k]) * control.weights
-    near = solved_point(problem, start, control, metric, onwards, point.arclength)
-    for _ in range(LOCATE.feet):
-        if not near:
-            return near
-        step = float((metric.weights * near.rates)[:3] @ (point.observables - near.observables)[:3])
-        far = metric.distance(point, near)
-        if abs(step) < far * LOCATE.aslant:
-            return replace(near, arclength=point.arclength)
-        near = correct(problem, near, step, metric)
-    return Unsolved("no state on another grid is nearest to one of the curve's; take a smaller rtol")
