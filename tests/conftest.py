@@ -50,7 +50,7 @@ def whole(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def compared(whole):
+def cases_of(whole):
     """Compare scenes at the usual tolerance, or take what a command line of the session found; see `comparisons`."""
     (place,) = whole.args
 

@@ -25,7 +25,7 @@ END = 600_000
 
 
 @pytest.fixture(scope="module")
-def report(compared, tmp_path_factory):
+def report(cases_of, tmp_path_factory):
     """A page whose half-space is another by far, so that its lines are told from those of the elements."""
     curves = solve(Question(Scene(2.0), "both", 1e-3))
     walked = walk(curves, states=10)
@@ -33,7 +33,7 @@ def report(compared, tmp_path_factory):
         replace(one, pressure=one.pressure * [[1.0], [0.5]], gap=one.gap * [[1.0], [0.7]]) for one in walked.stations
     ]
     walked = replace(walked, stations=tuple(scaled))
-    contents = Contents(compared(1.0), curves, walked, {})
+    contents = Contents(cases_of(1.0), curves, walked, {})
     file = tmp_path_factory.mktemp("report") / "report.html"
     file.write_text(page(contents))
     return file

@@ -24,9 +24,9 @@ from halfspace.laws import LENNARD_JONES
 
 
 @pytest.fixture(scope="module")
-def contents(compared):
+def contents(cases_of):
     curves = solve(Question(Scene(2.0), "both", 1e-3))
-    return Contents(compared(1.0), curves, walk(curves), {})
+    return Contents(cases_of(1.0), curves, walk(curves), {})
 
 
 @pytest.fixture(scope="module")

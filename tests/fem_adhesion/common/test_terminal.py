@@ -101,9 +101,9 @@ def test_a_cell_is_not_broken_between_a_number_and_its_unit(width):
 
 
 @pytest.fixture(scope="module")
-def case(compared):
+def case(cases_of):
     """A case with all values distinct and every verdict."""
-    (solved,) = compared(0.5)
+    (solved,) = cases_of(0.5)
     rows = (
         Row("first load", "R dgamma", Estimate(-1.2345678, 1e-7), Estimate(-1.2345679, 2e-7), 1.1e-7, 6.6e-5),
         Row("second load", "J", Estimate(2.3456789, 3e-7), Estimate(2.3999999, 4e-7), 5.5e-2, 7.7e-5),

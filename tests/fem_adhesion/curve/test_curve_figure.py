@@ -179,13 +179,12 @@ def test_events_that_would_be_too_small_are_enlarged():
 
 @pytest.mark.parametrize("form", ["svg", "png", "pdf"])
 def test_each_format_is_written_the_same_twice(curves, form, tmp_path):
-    files = [tmp_path / f"{n}.{form}" for n in (1, 2)]
+    files = [tmp_path / f"{n}.{form}" for n in ((1,) if form == "pdf" else (1, 2))]  # a PDF has the time in it
     for file in files:
         with file.open("w") as opened:
             style.write(lambda: curve_figure.draw(curves[2.0]), opened, form, curve_figure.LOOK)
     assert files[0].stat().st_size > 10_000
-    if form != "pdf":  # which has the time in it
-        assert files[0].read_bytes() == files[1].read_bytes()
+    assert len({file.read_bytes() for file in files}) == 1
 
 
 # --- labels of the axes against the data drawn ---
