@@ -33,7 +33,7 @@ from halfspace.accuracy.refinement import ascend, climb
 from halfspace.accuracy.stages import Rung, State, on_all
 from halfspace.accuracy.standing import Standing, WhereAsked
 from halfspace.elastic import grid
-from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts, undeformed_radius
+from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -348,21 +348,16 @@ class Windows(WhereAsked):
 
     def __iter__(self) -> Iterator[Chart]:
         """All of them in order."""
-        return map(self._chart, range(self._count))
+        return (self.serving(self._width * (number + 0.5)) for number in range(self._count))
 
-    def __call__(self, event: Located) -> Chart:
-        """Chart for a point of the curve."""
-        radius = float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
-        return self._chart(min(int(radius / self._width), self._count - 1))
-
-    def _chart(self, number: int) -> Chart:
+    def make(self, radius: float) -> tuple[float, float, Chart]:
+        """Chart for a window of contact radii, in beta; the last one serves all that are wider."""
+        number = min(int(radius / self._width), self._count - 1)
         first, last = self._width * number, self._width * (number + 1)
-        found = self.serving((first + last) / 2)
-        if not found:
-            for *_, chart in self.made:  # the points of a curve come in order
-                if isinstance(chart.problem, FiniteStrainProblem):
-                    chart.problem.held.forget()
-        return found or self.keep(first, last, self.body.chart(first, last))
+        for *_, chart in self.made:  # the points of a curve come in order
+            if isinstance(chart.problem, FiniteStrainProblem):
+                chart.problem.held.forget()
+        return first, last if number < self._count - 1 else np.inf, self.body.chart(first, last)
 
     @property
     def _width(self) -> float:

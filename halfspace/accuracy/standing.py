@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Protocol
+
+import numpy as np
 
 from halfspace.accuracy.finite_bodies import CHARTS, SizedBody
 from halfspace.accuracy.stages import Charted, Discretised
@@ -23,14 +26,20 @@ class WhereAsked(Stage):
 
     made: list[tuple[float, float, Chart]] = field(default_factory=list, compare=False, repr=False, kw_only=True)
 
-    def serving(self, radius: float) -> Chart | None:
-        """Chart made before that serves a contact radius in beta."""
-        return next((chart for least, most, chart in self.made if least <= radius <= most), None)
+    @abstractmethod
+    def make(self, radius: float) -> tuple[float, float, Chart]:
+        """Chart for a contact radius in beta, and the radii from and to which it serves."""
 
-    def keep(self, least: float, most: float, chart: Chart) -> Chart:
-        """Keep a chart that serves contact radii between these."""
-        self.made.append((least, most, chart))
-        return chart
+    def __call__(self, event: Located) -> Chart:
+        """Chart for a state: its own, on which it may have moved by more than that serves, or one that serves it."""
+        own = next((chart for *_, chart in self.made if chart.problem is event.problem), None)
+        return own or self.serving(float(np.nan_to_num(undeformed_radius(event.problem, event.point))))
+
+    def serving(self, radius: float) -> Chart:
+        """Chart that serves a contact radius in beta, made unless one made before will do."""
+        if not any(least <= radius <= most for least, most, _ in self.made):
+            self.made.append(self.make(radius))
+        return next(chart for least, most, chart in self.made if least <= radius <= most)
 
     @property
     def unknowns(self) -> int:
@@ -61,14 +70,12 @@ class Standing(WhereAsked):
     body: Gridded
     along: Callable[[], Stage]
 
-    def __call__(self, event: Located) -> Chart:
-        """Chart for an event, made unless one made before will do."""
-        for *_, chart in self.made:  # on its own an event may have moved by more than that serves
-            if chart.problem is event.problem:
-                return chart
-        radius, near = undeformed_radius(event.problem, event.point), NEAR * self.body.length
-        radius = radius if radius > self.body.length else 0.0
-        return self.serving(radius) or self.keep(radius - near, radius + near, self.body.standing(radius))
+    def make(self, radius: float) -> tuple[float, float, Chart]:
+        """Chart for a contact radius in beta, and the radii from and to which it serves."""
+        length, near = self.body.length, NEAR * self.body.length
+        if radius <= length:
+            return 0.0, length, self.body.standing(0.0)
+        return radius - near, radius + near, self.body.standing(radius)
 
     def moved(self, event: Located, problem: Traceable) -> Located | Unsolved:
         """Solve for an event on a grid that stands still, or near to it on one that follows the contact.
