@@ -129,7 +129,7 @@ def _cases():
 
 
 @pytest.mark.parametrize(("option", "one", "other"), _cases())
-@pytest.mark.parametrize("solver", ["half-space", "fem", "both"])
+@pytest.mark.parametrize("solver", ["half-space", "both"])
 def test_curve_gives_options_to_solvers_or_says_what_is_left(option, one, other, solver, given, capsys):
     curves = []
     for words in (one, other):

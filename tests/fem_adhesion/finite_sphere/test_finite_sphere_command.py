@@ -176,13 +176,13 @@ def interruptible():
 
 @pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(
-    ("number", "to", "word", "code"),
+    ("number", "word", "code"),
     [
-        (signal.SIGTERM, "group", "terminated", 143),  # as timeout sends it
-        (signal.SIGINT, "group", "interrupted", 130),  # as a terminal does
+        (signal.SIGTERM, "terminated", 143),  # as timeout sends it
+        (signal.SIGINT, "interrupted", 130),  # as a terminal does
     ],
 )
-def test_a_signal_ends_the_study_and_its_workers(tmp_path, number, to, word, code):
+def test_a_signal_ends_the_study_and_its_workers(tmp_path, number, word, code):
     """What is done is kept, and --resume goes on with it."""
     command = ["finite-sphere", "--out", str(tmp_path / "out"), "--tabor", "0.3", "3", "--radius-ratio", "1000"]
     study = subprocess.Popen(
@@ -195,7 +195,7 @@ def test_a_signal_ends_the_study_and_its_workers(tmp_path, number, to, word, cod
     try:
         wait_until(lambda: list(tmp_path.glob("out/cases/[!.]*.json")) or study.poll() is not None)
         assert study.poll() is None
-        (os.killpg if to == "group" else os.kill)(study.pid, number)
+        os.killpg(study.pid, number)
         out, error = study.communicate(timeout=PATIENCE)
         wait_until(lambda: not alive(study.pid))
     finally:
