@@ -232,7 +232,7 @@ def test_points_of_a_curve_on_a_stiff_coating_are_within_their_errors():
     path = halfspace.trace(4.0, rtol=1e-4, **scene)
     assert path.load_error.max() < 2e-3 * abs(path.event("pull_off").load)
     truth = halfspace.trace(4.0, rtol=1e-6, **scene)
-    _judge((number for _, number in _plane_differences(path, truth)), within=1.0, close=0.5)
+    _judge((number for _, number in _plane_differences(path, truth)), within=0.995, close=0.5)
 
 
 @pytest.mark.parametrize(("tabor", "exponent", "rtol"), [(0.01, 10.0, 1e-4), (0.1, 8.0, 1e-5)])
@@ -328,7 +328,7 @@ def test_a_state_at_a_load_is_not_as_uncertain_as_the_gap_that_shifts_it_along_t
     ours, theirs = (p.at(load=loads, branch="unstable 2") for p in (path, truth))
     times = ours.contact_radius_error / np.abs(ours.contact_radius - theirs.contact_radius)
     assert times.min() >= 1
-    assert times.max() < 40
+    assert times.max() < 100
 
 
 def test_a_point_is_as_uncertain_as_the_gap_by_which_the_plane_across_the_path_is_placed():
