@@ -31,7 +31,7 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import ErrorRule
+from halfspace.equilibrium.events import LEAST, ErrorRule
 from halfspace.errors import GridTooCoarse
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array
@@ -97,7 +97,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     stages = tuple(Charted(block_charts(scene, how, size, to_load)) for how in ((below, above) if level else ()))
     curve = partial(block_charts, scene, above, size, to_load)
     # A block of given size is compared with one other size only, and if both are small most of the error is left.
-    rule = ErrorRule(1.0 if scene.body.cut_off is None else 2.0)
+    rule = ErrorRule(1.0 if scene.body.cut_off is None else 2.0, least=LEAST * rtol)
     settings = {name: getattr(above, name) for name in ("degree", "finest", "growth")}
     return Rung(curve, stages, settings | {"radius": size}, rule=rule)
 
@@ -166,6 +166,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
             along=True,
             steps=scene.scales.steps,
             beyond=scene.tension_beyond,
+            least=LEAST * rtol,
         ),
     )
 

@@ -159,13 +159,12 @@ def eliminate_interiors(space: Space, K: Array) -> Array:
     n, interior = len(K[0]) // 2, space.element.interior_dofs
     shared, own = slice(n - interior), slice(n - interior, n)
     inner, outer = 2 * interior, 2 * (n - interior)
-    parts = K.reshape(-1, 2, n, 2, n)
-    done = parts[:, :, own, :, own].reshape(len(K), inner, inner)
-    beside = parts[:, :, own, :, shared].reshape(len(K), inner, outer)
-    left = parts[:, :, shared, :, shared].reshape(len(K), outer, outer)
-    for blocks in zip(done, beside, left, strict=True):
-        eliminate(*blocks)
-    return mirrored(left)
+    reduced = np.empty((len(K), outer, outer))
+    for cell, left in zip(K.reshape(-1, 2, n, 2, n), reduced, strict=True):
+        done = cell[:, own][..., own].reshape(inner, inner)
+        left[:] = cell[:, shared][..., shared].reshape(outer, outer)
+        eliminate(done, cell[:, own][..., shared].reshape(inner, outer), left)
+    return mirrored(reduced)
 
 
 def flexibility(space: Space, K: Array, exterior: Exterior, surface: Index) -> Array:

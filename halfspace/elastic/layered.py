@@ -59,7 +59,10 @@ class ImageSettings:
     fitted: float = 3e-8  # misfit at which no deeper images are tried
     at_worst: float = 1e-6  # misfit at which strata are refused
     near: float = 0.5  # lengths of a long cell around it where nodes need a rule of their own
-    adjacent: tuple[int, int] = (48, 2)  # points and grading of the rule next to a long cell; 24 leave 5e-6 on 0.01 beta
+    adjacent: tuple[int, int] = (
+        48,
+        2,
+    )  # points and grading of the rule next to a long cell; 24 leave 5e-6 on 0.01 beta
     apart: float = 0.3  # lengths of a long cell from which Gauss's rule leaves 5e-11 of a kernel
     apart_points: int = 14  # points of that rule
     at_once: int = 10**6  # numbers that are integrated at once

@@ -19,6 +19,7 @@ T = TypeVar("T")
 FOLDS = ("jump_on", "jump_off")  # the outermost in the approach
 EVENTS = ("pull_off", *FOLDS, "zero_load")
 FURTHER = re.compile(r"fold_([2-9]|[1-9]\d+)")  # the folds between the jumps, by their numbers along the curve
+LEAST = 2e-3  # of the accuracy asked for, that no number is told to be known better than
 REMAINING = 0.5  # of a change between two discretisations: what is left if each errs at most a third of the one before
 
 
@@ -137,6 +138,7 @@ def tolerance_told(rtol: float, missed: Mapping[str, Sequence[str]]) -> str:
 
 
 AT_A_POINT = [CENTRAL_GAP, CONTACT_RADIUS]
+OWN = np.array([1.0, 0.0, 1.0, 0.0])  # sizes beside their values: approaches and gaps have no natural zero
 
 
 @dataclass(frozen=True)
@@ -151,7 +153,8 @@ class ErrorRule:
     it does for other numbers than those at a point alone, as under a law that ends by a step: an integral over a cell
     in which that stands errs this way or that by its place, so that a number of several grids may agree by accident.
     `beyond` is the tension in R dgamma that acts beyond the cells of all discretisations, so that no change tells of
-    it.
+    it. No number is told to be known better than to `least` of its size: coarse grids may all agree by accident far
+    below the accuracy that they were made for.
     """
 
     remaining: float = REMAINING
@@ -159,6 +162,7 @@ class ErrorRule:
     along: bool = False
     steps: bool = False
     beyond: float = 0.0
+    least: float = 0.0
 
     def change(self, chain: Sequence[Array | float]) -> Array:
         """Sum of the changes along a chain of two values or more, arrays (...) or numbers, each by its part."""
@@ -168,7 +172,9 @@ class ErrorRule:
     def estimate(self, chains: Sequence[Sequence[float]], sizes: float) -> Estimate:
         """Of a number, by the chain along which it changes most, and what rounding leaves of terms of such sizes."""
         change = max(float(self.change(chain)) for chain in chains)
-        return Estimate(chains[0][-1], self.remaining * change + ROUND_OFF * (1 + sizes))
+        value = chains[0][-1]
+        error = self.remaining * change + ROUND_OFF * (1 + sizes)
+        return Estimate(value, max(error, self.least * abs(value)))
 
 
 USUAL = ErrorRule()
@@ -208,7 +214,7 @@ def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Array:
     gap, radius = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
     alone = rule.along or len(chains) == 1
     errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], [gap if alone else 0.0, radius])
-    return np.asarray(errors)
+    return np.asarray(np.maximum(errors, rule.least * (OWN + np.abs(best.point.observables))))
 
 
 def _by_load(event: Located) -> Array:
