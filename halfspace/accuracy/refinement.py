@@ -85,14 +85,13 @@ def _climb_from(
     further, lost = further_folds(segments if folds else (), jumps, before, higher)
     chains = _in_order(ascent.chains, further)
     lowest_stage = below.stages[-1] if below.stages else Charted(tuple(charts))
-    coarser = (higher.coarser,) if higher.coarser else ()
-    ladder = Ladder((*coarser, lowest_stage, *higher.stages), higher.twin, higher.rule)
+    ladder = Ladder((lowest_stage, *higher.stages), higher.twin, higher.rule, higher.coarser)
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
         _in_order(ascent.events, higher.estimates(further)),
         energy_along(chains, higher),
-        tuple({name: one[0][k] for name, one in chains.items()} for k in range(len(ladder.chain))),
+        tuple({name: one[0][k] for name, one in chains.items()} for k in range(-len(ladder.chain), 0)),
         ladder,
         time.perf_counter() - began,
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},

@@ -57,6 +57,7 @@ class Rung(Valued):
     the finest. The changes add up to the error, by the rule. On the lowest rung they only prepare, and there may be
     none. The twin is as fine as the rung below, with other cells: it errs as much, but not by the same accident of
     sign. The coarser stage differs from the rung below as that does from this one: two neighbours may err alike.
+    It need not have an event.
     """
 
     curve: Callable[[], Iterable[Chart]]
@@ -79,10 +80,7 @@ class Rung(Valued):
                 return found
             chain.append(found)
         if self.coarser:
-            found = met_again(self.coarser, event)
-            if not found:
-                return found
-            chain.insert(0, found)
+            chain.insert(0, met_again(self.coarser, event) or event)
         if self.twin:
             found = met_again(self.twin, chain[-1])
             if not found:

@@ -19,7 +19,7 @@ T = TypeVar("T")
 FOLDS = ("jump_on", "jump_off")  # the outermost in the approach
 EVENTS = ("pull_off", *FOLDS, "zero_load")
 FURTHER = re.compile(r"fold_([2-9]|[1-9]\d+)")  # the folds between the jumps, by their numbers along the curve
-LEAST = 2e-3  # of the accuracy asked for, that no number is told to be known better than
+LEAST = 5e-4  # of the accuracy asked for, that no event is told to be known better than
 REMAINING = 0.5  # of a change between two discretisations: what is left if each errs at most a third of the one before
 
 
@@ -153,7 +153,7 @@ class ErrorRule:
     it does for other numbers than those at a point alone, as under a law that ends by a step: an integral over a cell
     in which that stands errs this way or that by its place, so that a number of several grids may agree by accident.
     `beyond` is the tension in R dgamma that acts beyond the cells of all discretisations, so that no change tells of
-    it. No number is told to be known better than to `least` of its size: coarse grids may all agree by accident far
+    it. No event is told to be known better than to `least` of its size: coarse grids may all agree by accident far
     below the accuracy that they were made for.
     """
 

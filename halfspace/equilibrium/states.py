@@ -49,12 +49,14 @@ class Ladder(Valued):
     """Discretisations on which a state is solved for, so that its changes between them tell its error by a rule.
 
     The chain begins with the rung below the finest, and each differs from the one before in one respect. The twin is as
-    fine as the first of the chain, with other cells; it has the same error but for the accident of its sign.
+    fine as the first of the chain, with other cells; it has the same error but for the accident of its sign. A coarser
+    discretisation comes before the chain, where it has the state.
     """
 
     chain: tuple[Stage, ...]
     twin: Stage | None
     rule: ErrorRule
+    coarser: Stage | None = None
 
     @property
     def finest(self) -> Stage:
@@ -66,8 +68,9 @@ class Ladder(Valued):
         """The same for any state of the curve, where charts for events serve these alone."""
         stages = [stage.everywhere for stage in self.chain]
         differing = [a for a, b in zip(stages, [*stages[1:], None], strict=True) if a is not b]
-        rule = replace(self.rule, remaining=max(self.rule.remaining, 1.0))
-        return Ladder(tuple(differing), self.twin and self.twin.everywhere, rule)
+        rule = replace(self.rule, remaining=max(self.rule.remaining, 1.0), least=0.0)
+        others = [other and other.everywhere for other in (self.twin, self.coarser)]
+        return Ladder(tuple(differing), others[0], rule, others[1])
 
     @property
     def told(self) -> bool:
@@ -82,6 +85,8 @@ class Ladder(Valued):
             if isinstance(there, Unsolved):
                 return there
             (twin if stage is self.twin else chain).append(there)
+        if self.coarser:
+            chain.insert(0, again(self.coarser, fine) or chain[0])
         return [[*chain, fine], [*twin, fine]] if self.twin else [[*chain, fine]]
 
 

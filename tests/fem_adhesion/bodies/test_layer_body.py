@@ -295,5 +295,5 @@ def test_what_pulls_beyond_the_mesh_is_little_under_a_cone():
     scene = Scene(1.0, Layer(thickness=1.0), profile=Hyperboloid(5.0), law=PowerLaw(2.5, 9.5))
     elements, waves = fem_adhesion.trace(scene, rtol=1e-4), halfspace.trace(**scene.for_half_space, rtol=1e-6)
     pull_off = elements.event("pull_off")
-    assert abs(pull_off.load - waves.event("pull_off").load) < pull_off.load_error < 1e-4
+    assert abs(pull_off.load - waves.event("pull_off").load) < pull_off.load_error < 2e-4
     assert abs((elements.energy - waves.energy).value) < elements.energy.error < 1e-4  # that load over the whole way
