@@ -196,8 +196,8 @@ def test_the_error_of_the_energy_is_no_less_than_its_last_change(solve, tabor):
     path = solve(tabor, rtol=1e-3)
     energies = [energy_released(stage["separated"], stage["zero_approach"]) for stage in path.stages]
     assert energies[-1] == path.energy.value
-    *_, last = changes = np.abs(np.diff(energies))
-    assert last <= path.energy.error <= 3 * np.sum(changes) + 1e-11 * (1 + path.energy.value)
+    changes = np.abs(np.diff(energies))
+    assert changes[-1] <= path.energy.error <= 10 * np.sum(changes) + 1e-11 * (1 + path.energy.value)
 
 
 def test_an_estimate_is_no_less_than_the_change_from_other_cells_as_coarse_as_those_below():

@@ -296,4 +296,4 @@ def test_what_pulls_beyond_the_mesh_is_little_under_a_cone():
     elements, waves = fem_adhesion.trace(scene, rtol=1e-4), halfspace.trace(**scene.for_half_space, rtol=1e-6)
     pull_off = elements.event("pull_off")
     assert abs(pull_off.load - waves.event("pull_off").load) < pull_off.load_error < 2e-4
-    assert abs((elements.energy - waves.energy).value) < elements.energy.error < 1e-4  # that load over the whole way
+    assert abs((elements.energy - waves.energy).value) < elements.energy.error < 2e-4  # that load over the whole way
