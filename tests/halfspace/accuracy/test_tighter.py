@@ -46,6 +46,8 @@ CONTACTS = {  # what was wrong: the contact, its tolerance, and the tighter one
     ),
     "contact born between folds": (28.9388, {"law": PowerLaw(3.32, 11.7), "profile": Sphere(973.6)}, 1e-4, 1e-6),
     "a fold passed on the axis": (10.0, {"profile": Sphere(100.0)}, 1e-7, 1e-9),
+    "two neighbouring grids erred alike": (1.27, {"law": Morse(11.3)}, 1e-4, 1e-6),
+    "four coarse grids agreed under no load": (4.77, {"to_load": 1.94}, 1.7e-3, 1e-6),
 }
 
 
@@ -69,3 +71,20 @@ def test_estimates_hold_what_a_tighter_tolerance_finds(contact):
     for name, pairs in found.items():
         for ours, truth in pairs:
             assert np.isnan(ours.value) or ours.agrees(truth), name
+
+
+def test_the_change_before_the_last_counts_for_a_fifth_on_grids_of_the_half_space():
+    path = halfspace.trace(1.0, rtol=1e-3)
+    rule = path.ladder.rule
+    assert path.ladder.coarser
+    assert rule.change([0.0, 1.0, 1.1]) == pytest.approx(0.2 * 1.0 + 0.1)
+    assert rule.estimate([[5.0, 5.0]], 0.0).error == pytest.approx(5e-4 * 1e-3 * 5.0)
+
+
+def test_a_layers_twin_has_images_of_its_own():
+    """What their fit leaves is the same on all grids that share them: a stiff stack was five estimates off."""
+    ladder = halfspace.trace(1.0, body=Layer(1.0, 0.3), rtol=1e-3).ladder
+    images = [stage.charts[0].problem.interface.operator.images for stage in (*ladder.chain, ladder.twin)]
+    counts = [one.depths.size for one in images]
+    assert len({*counts[:-1]}) == 1
+    assert counts[-1] > counts[0]
