@@ -31,7 +31,7 @@ class GridSettings:
     extent: float = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good
     most_nodes: int = 16  # of a panel
     tip: float = 1.5  # times as fast as elsewhere; with 2 or 3 two of 427 numbers were outside their estimates
-    before: float = 0.2  # of the change before that, what may be left: without it 2.45 errors, at half of it 1.5
+    before: float = 0.2  # of the change before the last, what may be left: an error was 2.45 estimates without it
     most_widths: int = 60  # of a spike of tension that are resolved at once
     twin: tuple[float, ...] = (
         0.75,

@@ -45,8 +45,7 @@ class Kernel:
 
     `make` makes the operator of the half-space. `resolutions` gives, for a relative accuracy, that of a level, that of
     the level below and, if the change from it tells anything, a coarser one. Of the last change `left` may be left as
-    error. `least` is the smallest accuracy that is
-    served, and `most_rungs` the number of levels above the lowest.
+    error. `least` is the smallest accuracy that is served, and `most_rungs` the number of levels above the lowest.
     """
 
     name: str

@@ -1,8 +1,8 @@
 """The load-approach curve to an accuracy asked for: a ladder of discretisations of any body.
 
 The curve is traced on the lowest rung and each event solved for again on the next, and on more if need be. An event's
-error estimate is a part of its change from the last rung but one to the last, which is nearly the lower rung's error:
-half of it where the higher rung leaves a third of that error at most, more where it may leave more.
+error estimate is a part of its change from the last rung but one to the last, which is nearly the lower rung's error,
+and a fifth of that from a still coarser grid, since two neighbours may err alike; see `ErrorRule`.
 """
 
 from __future__ import annotations
