@@ -134,7 +134,7 @@ def _apart(contact: Contact, radius: float) -> list[float]:
 class Compared:
     """A number of the finite elements beside those of the coarse and the fine body, None where they have none.
 
-    Of what rounding makes of theirs a finer body has no less.
+    The ripples of theirs are what no finer body has less of.
     """
 
     quantity: str
@@ -142,23 +142,23 @@ class Compared:
     both: tuple[float | None, float | None]
     second: Estimate
     size: float
-    rounding: tuple[float, float] = (0.0, 0.0)
+    ripples: tuple[float, float] = (0.0, 0.0)
 
     @property
     def change(self) -> float:
-        """Difference of both bodies that rounding does not explain, relative to the size."""
+        """Difference of both bodies that their ripples do not explain, relative to the size."""
         coarse, fine = self.both
-        return 0.0 if coarse is None or fine is None else max(abs(fine - coarse) - sum(self.rounding), 0.0) / self.size
+        return 0.0 if coarse is None or fine is None else max(abs(fine - coarse) - sum(self.ripples), 0.0) / self.size
 
     def row(self, doubt: float) -> Row:
-        """Row, if what the weak form errs by, but for rounding, is so much of the size."""
+        """Row, if what the weak form errs by, but for ripples, is so much of the size."""
         coarse, fine = self.both
-        first = None if coarse is None or fine is None else Estimate(fine, doubt * self.size + self.rounding[1])
+        first = None if coarse is None or fine is None else Estimate(fine, doubt * self.size + self.ripples[1])
         return of_values(f"apart: {self.quantity}", self.unit, first, self.second, USUAL.budget * self.size, WEAK_FORM)
 
 
 def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
-    """Balance, reaction, turning points and energy of every event of the finite elements, in the weak form.
+    """Balance, load, turning points and energy of every event of the finite elements, in the weak form.
 
     The weak form errs by less than a coarser and a finer body differ; they are ever finer until that is within its
     budget, and both have every number: ripples of a law with a step may hide where a state turns. As two may agree by
@@ -188,20 +188,19 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
     before = _state(fine.contact, path.stages[-2][name])  # of the stage before: how much of ripples a stiff law makes
     approach, load = map(event.estimate, ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
-    balances, reactions = (coarse.balance, fine.balance), (coarse.reaction, fine.reaction)
+    balances, forces = (coarse.balance, fine.balance), (coarse.attraction, fine.attraction)
     balanced = Estimate(0.0, approach.error + abs(before.balance - fine.balance))
     yield Compared(f"{name} balance", "eps", balances, balanced, width)
     if name != "zero_load":
-        doubt = Estimate(0.0, abs(before.reaction - fine.reaction))
-        rounding = coarse.rounding, fine.rounding
-        yield Compared(f"{name} reaction", "R dgamma", reactions, load + doubt, force, rounding)
+        doubt = Estimate(0.0, abs(before.attraction - fine.attraction))
+        yield Compared(f"{name} attraction", "R dgamma", forces, load + doubt, force)
     a, b = _beside(name, coarse), _beside(name, fine)
     for quantity, unit in (("central_gap", "eps"), ("contact_radius", "beta")):
         known, both = event.estimate(quantity), (getattr(a, quantity, None), getattr(b, quantity, None))
         if not all(value is not None and math.isnan(value) for value in (*both, known.value)):
             gap, size = quantity == "central_gap", USUAL.pointwise * (1 + abs(known.value))
-            ripples = (getattr(a, "ripple", 0.0), getattr(b, "ripple", 0.0)) if gap else (0.0, 0.0)
-            yield Compared(f"{name} {quantity}", unit, both, known, size, ripples)
+            of_gap = (getattr(a, "ripple", 0.0), getattr(b, "ripple", 0.0)) if gap else (0.0, 0.0)
+            yield Compared(f"{name} {quantity}", unit, both, known, size, of_gap)
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
     smooth, sharp = name == "jump_on", sharpness(scene, radius) > USUAL.sharp
     if name in FOLDS and (smooth or not sharp):
@@ -230,7 +229,7 @@ def _stable_side(state: Equilibrium) -> float:
     for step in np.array(USUAL.aside) * (1 + abs(state.load)):
         below, above = (_found(state.past, d, under_load=False) for d in (-step, step))
         if below and above:
-            ways = below.tangent.unstable, above.tangent.unstable
+            ways = below.unstable, above.unstable
             return float(ways[0] - ways[1]) if min(ways) == 0 else math.nan
     return math.nan
 
@@ -266,22 +265,14 @@ class StateInWeakForm(Valued):
     balance: float
 
     @property
-    def reaction(self) -> float:
-        """Far reaction in R dgamma, and what is pulled at beyond the mesh."""
-        return self.contact.far_reaction(self.u, self.gap) + self.contact.load_beyond(self.approach)
-
-    @property
-    def rounding(self) -> float:
-        """What rounding makes of the reaction: it is what acts at the gaps, as u_z = 1 is a motion of the elements.
-
-        On flat cells under a stiff coating up to 1e-3 of the load.
-        """
-        return abs(self.reaction - self.contact.load(self.y))
-
-    @property
     def y(self) -> Array:
         """State of the weak form."""
         return np.append(self.gap, self.approach)
+
+    @property
+    def attraction(self) -> float:
+        """Load in R dgamma of the tensions across the gaps."""
+        return self.contact.load(self.y)
 
 
 def _places(event: Located) -> tuple[float, float]:

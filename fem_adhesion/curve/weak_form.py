@@ -15,7 +15,8 @@ def draw(curves: Curves) -> Figure:
     """Load and central gap against approach, by stability, with the events."""
     curve, (figure, axes) = curves.paths[WEAK_FORM], style.panels(2)
     s = np.unique(np.linspace(curve.arclength[:-1], curve.arclength[1:], lines.DRAWING.between + 1))
-    spline = CubicHermiteSpline(curve.arclength, curve.observables[:, :3], curve.rates)
+    values = np.column_stack([curve.approach, curve.load, curve.central_gap])
+    spline = CubicHermiteSpline(curve.arclength, values, curve.rates)
     before = np.clip(np.searchsorted(curve.arclength, s, side="right") - 1, 0, len(curve.stable) - 2)
     approach, load, central_gap = spline(s).T
     line = lines.Line(

@@ -18,8 +18,8 @@ equation; an event exchanges that equation for its own: d(alpha)/ds = 0 at jump_
 W = 0 at zero_load.
 
 In the order of reading: `body` (the forms, the mesh, what holds a body), `contact` (law, profile, gaps, load, energy),
-`newton` (Newton's method with a border, equilibria, where they turn), `path` (arclength, events), `curve` (a scene's
-curve with its errors), `settings` (numbers of the algorithms). The check of the solvers
+`newton` (Newton's method with a border, equilibria, where they turn), `curve` (arclength, events, a scene's curve with
+its errors), `settings` (numbers of the algorithms). The check of the solvers
 (`fem_adhesion.crosscheck.from_scratch`) goes the same road up to `newton`. Bodies with a length of their own come to it
 with the meshes of the solver that it checks, see `fem_adhesion.crosscheck.weak_bodies`.
 

@@ -87,10 +87,6 @@ class Body(Valued):
         How deep the points are under the pole, in beta.
     rim : float
         Radius at which the surface ends.
-    reaction : (n,) array
-        Upward force, per unknown, of what holds the body.
-    borne : (q,) array
-        Part of the tension at the points that it bears directly: at the corner where the surface is held.
     """
 
     stiffness: sparse.csc_array
@@ -99,8 +95,6 @@ class Body(Valued):
     area: Array
     depths: Array
     rim: float
-    reaction: Array
-    borne: Array
 
     @cached_property
     def _factors(self) -> Any:
@@ -128,8 +122,7 @@ class Body(Valued):
 
     def scaled(self, a: float) -> Body:
         """The same body a times as large: its stiffness grows as its size."""
-        points = self.values, self.radii * a, self.area * a**2, self.depths * a
-        return Body(self.stiffness * a, *points, self.rim * a, self.reaction * a, self.borne)
+        return Body(self.stiffness * a, self.values, self.radii * a, self.area * a**2, self.depths * a, self.rim * a)
 
 
 def factorise(matrix: Any) -> Any:
@@ -168,17 +161,13 @@ def discretise(
     unknowns, far = np.arange(2 * basis.N), basis.get_dofs("far")
     held = [basis.get_dofs("axis").all(), basis.N + far.all(), *([] if slides else [far.all()])]
     T = sparse.eye_array(unknowns.size, format="csc")[:, np.setdiff1d(unknowns, np.concatenate(held))]
-    # A translation of what is held: of hierarchical functions those of the vertices alone add up to 1.
-    upwards = basis.N + (far.nodal["u"] if isinstance(element, ElementQuadP) else far.all())
-    moved = sparse.csc_array(np.isin(unknowns, upwards).astype(float)[:, None])
-    T = sparse.csc_array(sparse.hstack([T, moved])) if plate else T
-    reaction = 0 * last(T.shape[1]) if plate else (moved.T @ K @ T).toarray()[0]
+    if plate:  # of hierarchical functions those of the vertices alone add up to 1
+        upwards = basis.N + (far.nodal["u"] if isinstance(element, ElementQuadP) else far.all())
+        T = sparse.hstack([T, sparse.csc_array(np.isin(unknowns, upwards).astype(float)[:, None])])
     (radii, heights), rim = surface.global_coordinates(), float(mesh.p[0, mesh.facets[:, surface.find]].max())
     area = 2 * np.pi * radii * surface.dx * (1.0 if on_surface else surface.normals[1])
-    values = surface_values(surface)
-    borne = np.zeros(radii.size) if plate else (values @ moved).toarray()[:, 0]
-    points = sparse.csr_array(values @ T), radii.ravel(), area.ravel(), -heights.ravel()
-    body = Body(sparse.csc_array(T.T @ K @ T), *points, rim, reaction, borne)
+    values = sparse.csr_array(surface_values(surface) @ T)
+    body = Body(sparse.csc_array(T.T @ K @ T), values, radii.ravel(), area.ravel(), -heights.ravel(), rim)
     return on_spring(body, 1.0) if plate else body
 
 
@@ -204,9 +193,8 @@ def surface_values(surface: Any) -> sparse.csr_array:
 
 def on_spring(body: Body, stiffness: float) -> Body:
     """Add a spring under the last unknown, the plate that the body stands on."""
-    foot = last(body.reaction.size)
-    K = body.stiffness + sparse.diags_array(stiffness * foot)
-    return replace(body, stiffness=sparse.csc_array(K), reaction=body.reaction - stiffness * foot)
+    K = body.stiffness + sparse.diags_array(stiffness * last(body.stiffness.shape[0]))
+    return replace(body, stiffness=sparse.csc_array(K))
 
 
 def on_ground(body: Body, pressure: Array, load: float, work: float) -> Body:
@@ -217,14 +205,10 @@ def on_ground(body: Body, pressure: Array, load: float, work: float) -> Body:
 
 def opposed(first: Body, second: Body, share: float) -> Body:
     """Two bodies that face each other at points of the same radii, the second with this share of the compliance."""
-    (a, K, by_first), (b, L, _) = (
-        (np.argsort(body.radii), body.stiffness / part, body.reaction / part)
-        for body, part in ((first, 1 - share), (second, share))
-    )
+    a, b = (np.argsort(body.radii) for body in (first, second))
     values = sparse.csr_array(sparse.hstack([first.values[a], second.values[b]]))
-    points = values, first.radii[a], first.area[a], first.depths[a]
-    stiffness = sparse.csc_array(sparse.block_diag([K, L]))
-    return Body(stiffness, *points, first.rim, np.append(by_first, 0 * second.reaction), first.borne[a])
+    stiffness = sparse.csc_array(sparse.block_diag([first.stiffness / (1 - share), second.stiffness / share]))
+    return Body(stiffness, values, first.radii[a], first.area[a], first.depths[a], first.rim)
 
 
 def last(size: int) -> Array:
@@ -236,7 +220,13 @@ def last(size: int) -> Array:
 
 
 def half_space(
-    finest: float, size: float, degree: int, poisson: float, tip: float = np.inf, reach: float = 1.0
+    finest: float,
+    size: float,
+    degree: int,
+    poisson: float,
+    tip: float = np.inf,
+    reach: float = 1.0,
+    how: Settings = USUAL,
 ) -> Body:
     """Box of a half-space as wide and deep as its size, whose cells grow from `finest` at radius 1 of the surface on.
 
@@ -245,17 +235,13 @@ def half_space(
     It stands on a spring that yields as what is beyond would: Hertz's pressure sqrt(1 - r^2), of the load 2 pi/3, does
     the work 4 pi^2/15 on a half-space, and what it falls short of that on the box is done on the spring.
     """
-    body = discretise(half_space_mesh(finest, size, tip, reach), degree, [(poisson, 1.0)], plate=True)
-    return on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
-
-
-def half_space_mesh(finest: float, size: float, tip: float = np.inf, reach: float = 1.0, how: Settings = USUAL) -> Any:
-    """Mesh of that box."""
     steps = growing(finest, size, how.growth, how.even)
     inner = 1 - steps[steps < how.inner][::-1]
     core = inner[0] * how.growth ** -np.arange(1.0, np.ceil(np.log(max(inner[0] / tip, 1.0)) / np.log(how.growth)) + 1)
     r = fine_within(reach, np.concatenate([[0.0], core[::-1], inner, [1.0], 1 + steps]), how.within)
-    return box(r, growing(min(finest, tip), size, how.growth))
+    mesh = box(r, growing(min(finest, tip), size, how.growth))
+    body = discretise(mesh, degree, [(poisson, 1.0)], plate=True)
+    return on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
 
 
 def box(r: Array, z: Array) -> Any:

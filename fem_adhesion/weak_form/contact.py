@@ -163,7 +163,3 @@ class Contact(Valued):
     def _released(self, h: Array, height: Array) -> Array:
         """Potential per dA at gaps h less that of the undeformed surfaces in touch."""
         return np.asarray(self.law.potential(h) - self.law.potential(1 + self.tabor * height))
-
-    def far_reaction(self, u: Array, h: Array) -> float:
-        """Upward force of what holds the body, displaced by the tensions of given gaps: their load, in equilibrium."""
-        return float(self.body.reaction @ u) - self.tabor * self.body.integral(self.body.borne * self.law.tension(h))

@@ -1,43 +1,200 @@
-"""The whole load-approach curve of a scene by full Newton on the weak form, with errors from two degrees."""
+"""The path of equilibria through the folds, its events, and the whole curve of a scene with errors from two degrees."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.optimize import newton as secant
 
 from fem_adhesion.scene import Scene, require_scene
 from fem_adhesion.weak_form.body import Array, box, discretise, growing
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.path import Path, Point, arclength, condition_of
+from fem_adhesion.weak_form.newton import Equilibrium, along, at_approach, at_load, even, newton, on_axis
 from fem_adhesion.weak_form.settings import USUAL, Settings
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
-from halfspace.errors import InputError
+from halfspace.errors import InputError, NotConverged, Unsolved, tried
 from halfspace.laws import LENNARD_JONES
 from halfspace.limits import require_between
 from halfspace.profiles import Paraboloid
-from halfspace.values import Valued
+from halfspace.values import States, Valued
 
-OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
 LIMITS = {"tabor": (0.02, 5.0), "poisson": (0.0, 0.49), "rtol": (1e-4, 0.1), "to_load": (0.0, 20.0)}
+
+# The path
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Curve(Valued):
-    """A load-approach curve from separation to compression, through every fold.
+class Point(Valued):
+    """An equilibrium and the direction of the path there.
+
+    Attributes
+    ----------
+    state : Equilibrium
+        The equilibrium.
+    direction, row : (q + 1,) array
+        Unit tangent of the path, and the row <tangent, .> of the inner product.
+    """
+
+    state: Equilibrium
+    direction: Array
+    row: Array
+
+    @cached_property
+    def observables(self) -> Array:
+        """Approach and load, central gap H(0) in eps, contact radius in beta (nan without contact)."""
+        state = self.state
+        return np.array([state.approach, state.load, state.central_gap, state.contact_radius])
+
+    @cached_property
+    def rates(self) -> Array:
+        """Change of approach, load and central gap along the path."""
+        contact, direction = self.state.contact, self.direction
+        load = float(contact.load_row(self.state.y) @ direction)
+        return np.array([direction[-1], load, on_axis(contact, direction[:-1])])
+
+    @property
+    def stable(self) -> bool:
+        """Whether the state is stable under fixed grips."""
+        return self.state.unstable == 0
+
+
+Condition = Callable[[Point], float]
+CONDITIONS: Mapping[str, Condition] = {
+    "fold": lambda point: float(point.rates[0]),
+    "pull_off": lambda point: float(point.rates[1]),
+    "zero_load": lambda point: point.state.load,
+}
+"""What vanishes at an event: d(alpha)/ds at a jump or a further fold, dW/ds at pull-off, W at no load."""
+
+
+def condition_of(name: str) -> Condition:
+    """What vanishes at the event of a name."""
+    return CONDITIONS.get(name, CONDITIONS["fold"])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Path(Valued):
+    """The equilibria of a contact; the mean square of a change of the gap on a disc measures their arclength.
+
+    The radius of the disc is in beta.
+    """
+
+    contact: Contact
+    disc: float
+    how: Settings = USUAL
+
+    @cached_property
+    def inner(self) -> Array:
+        """Weights (q + 1,) of <y, y'> = alpha alpha' + mean over the disc of h h'."""
+        body = self.contact.body
+        return np.append(np.where(body.radii < self.disc, body.area, 0.0) / (np.pi * self.disc**2), 1.0)
+
+    def point(self, state: Equilibrium, onward: Array) -> Point:
+        """Point of the path at an equilibrium, in the direction in which a row rises."""
+        rate = state.rate
+        row = self.inner * rate
+        size = np.copysign(np.sqrt(row @ rate), onward @ rate)
+        return Point(state, rate / size, row / size)
+
+    def onward(self, a: Point, s: float) -> Point:
+        """Point an arclength past another, from a start on the tangent there."""
+        if s == 0:
+            return a
+        reached = along(a.row, float(a.row @ a.state.y) + s)
+        return self.point(newton(self.contact, a.state.y + s * a.direction, reached, self.how.most_along), a.row)
+
+    def follow(self, approach: float, to_load: float) -> list[Point]:
+        """Points from an approach of separated surfaces, through every fold, to a compressive load."""
+        start, how = self.contact.undeformed(approach), self.how
+        points = [self.point(newton(self.contact, start, at_approach(start)), np.eye(1, start.size, start.size - 1)[0])]
+        s = how.first
+        while points[-1].state.load < to_load:
+            before = points[-1]
+            if s < how.shortest or len(points) > how.most_points:
+                at = f"alpha = {before.state.approach:.4g} eps"
+                raise NotConverged(f"the weak form's path ends at {at}; try another to_load or a smaller tabor")
+            point = tried(self.onward, before, s)
+            if isinstance(point, Unsolved):
+                s /= 2
+                continue
+            opened = abs((1 + point.observables[2]) / (1 + before.observables[2]) - 1) / how.opening
+            # The chord turns half as much as the tangent: a long one has led to another part of the path.
+            chord = s**2 / float(self.inner @ (point.state.y - before.state.y) ** 2)
+            turned = (1 - min(float(before.row @ point.direction), 2 * chord - 1)) / (1 - how.turn)
+            if max(opened, turned) > 1 or turns_twice(before, point):
+                s /= 2
+                continue
+            points.append(point)
+            s *= float(np.clip(how.suits / max(opened, turned), 0.5, 2.0))
+        last, end = points[-1], at_load(self.contact, to_load)
+        return [*points[:-1], self.point(newton(self.contact, last.state.y, end), last.row)]
+
+    def located(self, points: Sequence[Point], condition: Condition) -> list[Point]:
+        """All points at which a condition changes its sign, in order; the state is solved for at every trial."""
+        found = []
+        for a, b in pairwise(points):
+            if condition(a) * condition(b) < 0:
+                length = float(a.row @ (b.state.y - a.state.y))
+                root = brentq(lambda s, a=a: condition(self.onward(a, s)), 0.0, length, xtol=self.how.root * length)
+                found.append(self.onward(a, root))
+        return found
+
+    def events(self, points: Sequence[Point]) -> dict[str, Point]:
+        """Pull-off, zero load in contact, and the folds: jump_on and jump_off the outermost, fold_2 ... between."""
+        folds, extrema, zeros = (self.located(points, condition) for condition in CONDITIONS.values())
+        if not extrema:
+            raise NotConverged("the weak form's path has no minimum of the load; give a larger to_load")
+        found = {"pull_off": min(extrema, key=CONDITIONS["zero_load"])}
+        if len(folds) > 1:
+            found |= {"jump_on": folds[0], "jump_off": folds[-1]}
+            found |= {f"fold_{n}": point for n, point in enumerate(folds[1:-1], 2)}
+        return found | ({"zero_load": zeros[-1]} if zeros else {})
+
+    def taken_over(self, point: Point) -> Point:
+        """Point on the same cells by elements of another degree, on its plane across the path."""
+        y, direction = (carried(self.contact, point.state.contact, each) for each in (point.state.y, point.direction))
+        row = self.inner * direction
+        return self.point(newton(self.contact, y, along(row, float(row @ y))), row)
+
+    def event_near(self, point: Point, condition: Condition) -> Point:
+        """Event near a point, by the secant in the arclength."""
+        how = self.how
+        s = secant(lambda s: condition(self.onward(point, s)), 0.0, x1=how.beside, tol=how.root * how.first)
+        return self.onward(point, float(s))
+
+
+def carried(onto: Contact, source: Contact, y: Array) -> Array:
+    """State, or direction, at the points of other elements."""
+    return np.append(even(source.body.radii, y[:-1])(onto.body.radii), y[-1])
+
+
+def turns_twice(a: Point, b: Point) -> bool:
+    """Whether approach or load turn and turn back between two points, by the cubics with their values and rates."""
+    means = (b.observables - a.observables)[:2] / (a.row @ (b.state.y - a.state.y))
+    before, after = a.rates[:2], b.rates[:2]
+    halfway = 1.5 * means - (before + after) / 4
+    return bool(((before * after > 0) & (before * halfway < 0)).any())
+
+
+# The curve
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Curve(States):
+    """A load-approach curve from separation to compression, through every fold: points with their errors, and events.
 
     Attributes
     ----------
     tabor, rtol : float
         Tabor parameter, and the relative accuracy that was asked of loads and approaches.
-    observables, errors : (points, 4) array
-        Approach (eps), load (R dgamma, positive in compression), central gap H(0) (eps) and contact radius (beta, nan
-        without contact) of each point, and the estimated errors of these.
     rates : (points, 3) array
         Of approach, load and central gap along the path.
     arclength : (points,) array
@@ -47,36 +204,23 @@ class Curve(Valued):
     events : mapping of str to Event
         ``pull_off``, ``jump_on``, ``jump_off``, ``zero_load`` and, where the path winds, ``fold_2`` ...; each solved
         for, with the estimated error of each number.
-    tolerance : Tolerance
-        What `rtol` means for loads and approaches.
     unknowns : int
         Displacements of the finest elements.
     seconds : float
         Wall time.
     settings : mapping
-        Degrees of the elements, cells, size of the box.
+        Size of the box and the accuracy.
     """
 
     tabor: float
     rtol: float
-    observables: Array
-    errors: Array
     rates: Array
     arclength: Array
     stable: NDArray[np.bool_]
     events: Mapping[str, Event]
-    tolerance: Tolerance
     unknowns: int
     seconds: float = field(compare=False)
     settings: Mapping[str, Any]
-
-    def __getattr__(self, name: str) -> Array:
-        """Observables by name, ``approach``, ``load``, ``central_gap``, ``contact_radius``, and ``load_error`` ..."""
-        observable, _, error = name.partition("_error")
-        if observable not in OBSERVABLES or (error and name):
-            raise AttributeError(name)
-        table = self.errors if name.endswith("_error") else self.observables
-        return np.asarray(table[:, OBSERVABLES.index(observable)])
 
     def __repr__(self) -> str:
         """What was found, and whether to the accuracy asked for."""
@@ -87,6 +231,11 @@ class Curve(Valued):
     def event(self, name: str) -> Event | None:
         """Event by name, None if the curve does not have it."""
         return self.events.get(name)
+
+    @property
+    def tolerance(self) -> Tolerance:
+        """What `rtol` means for loads and approaches."""
+        return Tolerance.on(self.events, self.rtol)
 
     @property
     def stable_under_dead_load(self) -> NDArray[np.bool_]:
@@ -109,8 +258,8 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settin
 
     The body is meshed by quadrilaterals and clamped far away; scikit-fem assembles the weak form of
     `fem_adhesion.weak_form`, and a sparse factorisation solves it with the approach as a further unknown and the
-    arclength as a further equation. The path is followed on elements of the lowest degree. Its events and points are
-    solved for on higher ones, each until its change from degree to degree, which is its error estimate, is within
+    arclength as a further equation. The path is followed on elements of the lowest degree. Its points and events are
+    solved for on higher degrees, until their changes from degree to degree, which are the error estimates, are within
     `rtol`. It takes 10 s at a Tabor parameter of 0.5, 20 s at 1 and a minute at 2, where `fem_adhesion.trace` takes a
     fraction of a second.
 
@@ -136,34 +285,34 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settin
     began, paths = time.perf_counter(), _paths(scene, rtol, to_load, how)
     path = next(paths)
     points = path.follow(how.separated, to_load)
+    steps = [float(a.row @ (b.state.y - a.state.y)) for a, b in pairwise(points)]
     found, told = path.events(points), dict[str, Event]()
-    open_events = list(found)
-    errors, open_points = np.full((len(points), len(OBSERVABLES)), np.inf), np.arange(len(points))
+    errors = np.empty((0, 4))
     for path in paths:
-        for name in open_events:
-            finer = path.event_near(path.taken_over(found[name]), condition_of(name))
-            told[name], found[name] = _event(name, found[name], finer, how.found), finer
+        before, points = points, [path.taken_over(point) for point in points]
+        errors = np.array([np.abs(b.observables - a.observables) for a, b in zip(before, points, strict=True)])
+        for name, event in found.items():
+            found[name] = path.event_near(path.taken_over(event), condition_of(name))
+            told[name] = _event(name, event, found[name], how.found)
         tolerance = Tolerance.on(told, rtol)
-        rough = [name for name, event in told.items() if event.contact_radius_error > rtol * event.contact_radius]
-        open_events = [name for name, event in told.items() if name in rough or tolerance.missed_by(event)]
-        for n in open_points:
-            finer = path.taken_over(points[n])
-            errors[n], points[n] = np.abs(finer.observables - points[n].observables), finer
-        sizes = np.array([tolerance.approach, max(abs(point.state.load) for point in points)])
-        open_points = np.flatnonzero((errors[:, :2] > rtol * sizes).any(axis=1))
-        if not (open_points.size or open_events):
+        sizes = rtol * np.array([tolerance.approach, max(abs(point.state.load) for point in points)])
+        rough = any(event.contact_radius_error > rtol * event.contact_radius for event in told.values())
+        if not (rough or tolerance.missed(told) or (errors[:, :2] > sizes).any()):
             break
+    approach, load, central_gap, contact_radius = np.transpose([point.observables for point in points])
     return Curve(
+        approach,
+        load,
+        central_gap,
+        contact_radius,
+        *(errors[:, 0], errors[:, 1], errors[:, 2], errors[:, 3]),
         scene.tabor,
         rtol,
-        np.array([point.observables for point in points]),
-        errors,
         np.array([point.rates for point in points]),
-        np.cumsum([0.0, *(arclength(*both) for both in pairwise(points))]),
+        np.append(0.0, np.cumsum(steps)),
         np.array([point.stable for point in points]),
         told,
-        tolerance,
-        path.contact.body.reaction.size,
+        path.contact.body.stiffness.shape[0],
         time.perf_counter() - began,
         {"rtol": rtol, "far": path.contact.body.rim},
     )

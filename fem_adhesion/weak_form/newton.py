@@ -25,50 +25,14 @@ Condition = Callable[[Array], tuple[float, Array]]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Tangent(Valued):
-    """How a contact yields to a small change of a state, with the law's straight line in the place of the law.
-
-    Attributes
-    ----------
-    slope : (q,) array
-        sigma' at the gaps of the state in dgamma/eps^2.
-    factors : SuperLU
-        Of A: the form a(u, v) + mu^2 int sigma' u_z v_z dA, on all displacements.
-    u_rate, rate : (n,), (q + 1,) array
-        Change of the displacements and of the state along the equilibria, by approach.
-    stiffness : float
-        dW/dalpha along the equilibria in R dgamma/eps.
-    """
-
-    slope: Array
-    factors: Any
-    u_rate: Array
-    rate: Array
-    stiffness: float
-
-    @classmethod
-    def at(cls, contact: Contact, y: Array) -> Tangent:
-        """Tangent of a contact at a state."""
-        body, mu, slope = contact.body, contact.tabor, contact.law.slope(y[:-1])
-        factors = body.softened(mu**2 * slope)
-        u_rate = factors.solve(-mu * body.forces(slope))
-        rate = np.append(-1 - mu * body.rise(u_rate), 1.0)
-        return cls(slope, factors, u_rate, rate, float(contact.load_row(y) @ rate))
-
-    @cached_property
-    def unstable(self) -> int:
-        """Number of directions in which the energy falls at this approach: negative eigenvalues of A."""
-        return int((self.factors.U.diagonal() < 0).sum())
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class Equilibrium(Valued):
-    """A state of equilibrium of a contact: the state y, its displacements u (n,), and a tangent nearby."""
+    """A state of a contact, and how it yields to a small change, with the law's straight line in the place of the law.
+
+    Newton's method makes of each state another, the last of which is in equilibrium.
+    """
 
     contact: Contact
     y: Array
-    u: Array
-    nearby: Tangent
 
     @property
     def approach(self) -> float:
@@ -81,9 +45,37 @@ class Equilibrium(Valued):
         return self.contact.load(self.y)
 
     @cached_property
-    def tangent(self) -> Tangent:
-        """The tangent at the state itself."""
-        return Tangent.at(self.contact, self.y)
+    def slope(self) -> Array:
+        """The slope sigma' at the gaps, (q,), in dgamma/eps^2."""
+        return self.contact.law.slope(self.y[:-1])
+
+    @cached_property
+    def factors(self) -> Any:
+        """Factors of the form a(u, v) + mu^2 int sigma' u_z v_z dA on all displacements."""
+        return self.contact.body.softened(self.contact.tabor**2 * self.slope)
+
+    @cached_property
+    def rate(self) -> Array:
+        """Change (q + 1,) of the state along the equilibria, by approach."""
+        body, mu = self.contact.body, self.contact.tabor
+        return np.append(-1 - mu * body.rise(self.factors.solve(-mu * body.forces(self.slope))), 1.0)
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Return dW/dalpha along the equilibria in R dgamma/eps."""
+        return float(self.contact.load_row(self.y) @ self.rate)
+
+    @property
+    def unstable(self) -> int:
+        """Number of directions in which the energy falls at this approach: negative eigenvalues of that form."""
+        return int((self.factors.U.diagonal() < 0).sum())
+
+    @cached_property
+    def u(self) -> Array:
+        """Displacements (n,) that balance the tensions by the law's straight lines: the true ones in equilibrium."""
+        body, mu, h = self.contact.body, self.contact.tabor, self.y[:-1]
+        flat = self.contact.undeformed(self.approach)[:-1]
+        return np.asarray(self.factors.solve(mu * body.forces(self.contact.law.tension(h) + self.slope * (flat - h))))
 
     @property
     def energy(self) -> float:
@@ -119,9 +111,8 @@ class Equilibrium(Valued):
         return self.y[:-1] - self.contact.undeformed(self.approach)[:-1]
 
     def past(self, step: float, *, under_load: bool) -> Equilibrium:
-        """Equilibrium a step in approach or load farther, from what the tangent nearby predicts."""
-        near = self.nearby
-        start = self.y + (step if under_load else step / near.stiffness) * near.rate
+        """Equilibrium a step in approach or load farther, from what the tangent predicts."""
+        start = self.y + (step if under_load else step / self.stiffness) * self.rate
         reached = at_approach(start) if under_load else at_load(self.contact, self.load + step)
         return newton(self.contact, start, reached)
 
@@ -159,24 +150,18 @@ def at_load(contact: Contact, load: float) -> Condition:
 def newton(
     contact: Contact, y: Array, condition: Condition, most: int = USUAL.most, how: Settings = USUAL
 ) -> Equilibrium:
-    """Equilibrium with one more condition, from a state nearby; NotConverged if there is none.
-
-    The last step's tangent is the equilibrium's `nearby`.
-    """
-    body, mu = contact.body, contact.tabor
+    """Equilibrium with one more condition, from a state nearby; NotConverged if there is none."""
     for _ in range(most):
-        tangent, h, flat = Tangent.at(contact, y), y[:-1], contact.undeformed(y[-1])[:-1]
-        u = tangent.factors.solve(mu * body.forces(contact.law.tension(h) + tangent.slope * (flat - h)))
-        change = np.append(flat - mu * body.rise(u) - h, 0.0)
+        state = Equilibrium(contact, y)
+        change = np.append(contact.left_by(state.u, state.approach) - y[:-1], 0.0)
         missing, row = condition(y)
-        d = (missing - float(row @ change)) / float(row @ tangent.rate)
-        change, u = change + d * tangent.rate, u + d * tangent.u_rate
-        size = contact.law.size(h)
+        change = change + (missing - float(row @ change)) / float(row @ state.rate) * state.rate
+        size = contact.law.size(y[:-1])
         # Lest the surfaces pass through each other.
         y = y + min(1.0, how.closing / max(float((-change[:-1] / size).max()), how.closing)) * change
         moved = float(np.abs(change[:-1] / size).max())
         if moved**2 < how.near:
-            return Equilibrium(contact, y, u, tangent)
+            return Equilibrium(contact, y)
         if not np.isfinite(moved):
             break
     raise NotConverged(f"no equilibrium in {most} Newton steps of the weak form; try a nearer start")
@@ -190,11 +175,10 @@ def from_afar(contact: Contact, far: float, approach: float, how: Settings = USU
     start = contact.undeformed(far)
     state = newton(contact, start, at_approach(start))
     for _ in range(how.most):
-        left, rate = approach - state.approach, state.nearby.rate
-        if left == 0:
+        if (left := approach - state.approach) == 0:
             return state
-        fastest = float(np.max(np.abs(left * rate[:-1]) / contact.law.size(state.y[:-1])))
-        start = state.y + how.opening / max(how.opening, fastest) * left * rate
+        fastest = float(np.max(np.abs(left * state.rate[:-1]) / contact.law.size(state.y[:-1])))
+        start = state.y + how.opening / max(how.opening, fastest) * left * state.rate
         start[-1] = approach if fastest <= how.opening else start[-1]
         state = newton(contact, start, at_approach(start))
     raise NotConverged(f"no way from afar to alpha = {approach:.4g} eps in {how.most} steps of the weak form")
@@ -213,7 +197,7 @@ def turning_point(middle: Equilibrium, *, under_load: bool, how: Settings = USUA
     first *= min(1.0, 9 / middle.contact.sharpness**2)
 
     def slope(step: float) -> float:
-        stiffness = middle.past(step, under_load=under_load).tangent.stiffness
+        stiffness = middle.past(step, under_load=under_load).stiffness
         return stiffness if under_load else 1 / stiffness
 
     tol, tries = how.turned_at * first, how.tries

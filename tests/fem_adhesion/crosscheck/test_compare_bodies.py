@@ -14,7 +14,6 @@ from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.crosscheck.weak_bodies import contacts
 from fem_adhesion.elasticity import cells
-from fem_adhesion.weak_form.contact import LENNARD_JONES
 from halfspace.errors import InputError
 from halfspace.profiles import Paraboloid, Sphere
 
@@ -173,15 +172,3 @@ def test_the_weak_form_of_a_sphere_has_its_whole_surface(counter):
         area = contact.body.integral(np.ones_like(contact.body.radii)) + contact.rigid[1].sum()
         assert area == pytest.approx(np.pi * R**2, rel=1e-9)
         assert (contact.load_beyond(-5.0) < 0) == (counter is not None)
-
-
-HELD = [sphere(), Scene(1.0, HeldSphere(radius_ratio=30.0)), facing(0.4, 0.3, 3.0), BODIES["a mesh"][0]]
-
-
-@pytest.mark.parametrize("scene", HELD)
-def test_what_holds_a_body_bears_the_whole_load(scene):
-    """Also the tension at the corner where the surface is held, which deforms nothing."""
-    contact = contacts(scene)[0](1.2, 1.2)
-    h = 1.1 + 0.2 * contact.body.radii
-    load = -contact.tabor * contact.body.integral(LENNARD_JONES.tension(h))
-    assert contact.far_reaction(contact.displaced(h), h) == pytest.approx(load, rel=1e-9)

@@ -15,7 +15,7 @@ from fem_adhesion.mesh.block import block_grid
 from fem_adhesion.weak_form import trace
 from fem_adhesion.weak_form.body import discretise
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.path import Path
+from fem_adhesion.weak_form.curve import Path
 from halfspace.errors import InputError
 from halfspace.laws import Morse
 from halfspace.profiles import Power
