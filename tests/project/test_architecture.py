@@ -47,7 +47,7 @@ def test_the_fourth_level_imports_no_solver():
     own = {name for name in _imports("fem_adhesion.weak_form") if name.split(".")[0] in ("halfspace", "fem_adhesion")}
     own = {name for name in own if not name.startswith("fem_adhesion.weak_form.")}
     scene = {"fem_adhesion.scene.Scene", "halfspace.laws.LENNARD_JONES", "halfspace.profiles.Paraboloid"}
-    results = {"halfspace.equilibrium.events.Event", "halfspace.values.Valued"}
+    results = {f"halfspace.{name}" for name in ("equilibrium.events.Event", "values.States", "values.Valued")}
     refusals = {"halfspace.errors.InputError", "halfspace.errors.NotConverged", "halfspace.limits.require_between"}
     assert own == scene | results | refusals
 
