@@ -6,7 +6,6 @@ set of them; two that differ in one assumption tell what it does. Cases and reco
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
@@ -48,8 +47,6 @@ QUANTITIES = {
 }
 """Quantities of a curve and their units; hysteresis is the energy lost in a cycle under fixed grips."""
 
-STORED: Mapping[str, Status] = {"solved": "solved", "refused": "refused"}  # endings that are kept for the next run
-
 
 @dataclass(frozen=True)
 class SphereCase:
@@ -72,8 +69,7 @@ class SphereCase:
 
     def given(self, name: InputName) -> float:
         """Input of a model that depends on it, or InputError if the case has none."""
-        inputs = {"tabor": self.tabor, "radius_ratio": self.radius_ratio, "poisson": self.poisson}
-        value = inputs[name]
+        value: float | None = getattr(self, name)
         if value is None:
             raise InputError(f"{name} = None for the model {self.model}, limit: a number; give it")
         return value
@@ -107,30 +103,10 @@ def to_plain(record: Record) -> dict[str, object]:
     return {key: value for key, value in asdict(record).items() if key != "case"}
 
 
-def from_plain(case: SphereCase, plain: Mapping[str, object]) -> Record:
-    """Record of a case from what `to_plain` made.
-
-    Else InputError: a key is missing, a number is none or not finite, a status or quantity is unknown.
-    """
-    match plain:
-        case {
-            "status": str(status),
-            "values": dict(values),
-            "reason": str(reason),
-            "seconds": float(seconds),
-            "kind": str(kind),
-        } if status in STORED and (status == "refused") == bool(kind) and (status == "solved") != bool(reason):
-            found = {str(name): _estimate(str(name), pair) for name, pair in values.items()}
-            return Record(case, STORED[status], found, reason, seconds, kind)
-    raise InputError("it is no record of a case")
-
-
-def _estimate(name: str, pair: object) -> Estimate:
-    known = name in (*QUANTITIES, CRITICAL, APPROACH_SCALE)
-    match pair:
-        case {"value": float(value), "error": float(error)} if known and math.isfinite(value) and 0 <= error < math.inf:
-            return Estimate(value, error)
-    raise InputError(f"its {name} is no number with an error")
+def from_plain(case: SphereCase, plain: Mapping[str, Any]) -> Record:
+    """Record of a case from what `to_plain` made."""
+    values = {name: Estimate(**number) for name, number in plain["values"].items()}
+    return Record(case, **{**plain, "values": values})
 
 
 TO_LOAD = 0.5  # R dgamma: past every event, and little, since a sphere is no wider than it is

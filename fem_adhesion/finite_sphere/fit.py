@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -38,6 +37,10 @@ Term = Callable[[Array, Array], Array]
 def _power(exponent: float) -> Term:
     """(beta/R) to a power."""
     return lambda mu, rho: np.asarray((mu / rho) ** (exponent / 2))
+
+
+def _square_of(term: Term) -> Term:
+    return lambda mu, rho: term(mu, rho) ** 2
 
 
 ALL: Mapping[str, Term] = {
@@ -129,13 +132,9 @@ def compare(rows: Sequence[DeviationRow]) -> Iterator[tuple[str, float, float, E
         ("Maugis (1995): (beta/R)^2", "(beta/R)^2", SOFT_PULL_OFF, float(data.tabor.max())),
     ):
         leading = ALL[name]
-        terms: dict[str, Term] = {"leading": leading, "square": partial(_squared, leading)}
+        terms = {"leading": leading, "square": _square_of(leading)}
         found = fit(data.where(data.tabor == tabor), terms, tolerance=TOLERANCE / 10)
         yield theory, expected, tabor, found.coefficients["leading"]
-
-
-def _squared(term: Term, mu: Array, rho: Array) -> Array:
-    return term(mu, rho) ** 2
 
 
 def fit(data: Samples, terms: Mapping[str, Term], *, tolerance: float = TOLERANCE) -> Fit:

@@ -14,10 +14,9 @@ from fem_adhesion.common.page import Columns, Section, Table, bullets, said, tit
 from fem_adhesion.common.style import captions, draw, shown
 from fem_adhesion.finite_sphere.bulk import Bulk, coefficients
 from fem_adhesion.finite_sphere.cases import CRITICAL, Record
-from fem_adhesion.finite_sphere.chart import CHART, LINES
+from fem_adhesion.finite_sphere.chart import CHART, LINES, Field, field_of, safe_from
 from fem_adhesion.finite_sphere.figures import FIGURES
 from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, compare, findings
-from fem_adhesion.finite_sphere.plane import Field, field_of, safe_from
 from fem_adhesion.finite_sphere.study import Study
 from fem_adhesion.finite_sphere.table import CAUSES, borders, write_tables
 from halfspace.errors import InputError

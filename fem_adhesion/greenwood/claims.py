@@ -126,8 +126,8 @@ def numbers(facts: Facts) -> Iterator[tuple[str, float, Estimate, str]]:
         yield (name, 5.0, moved, "eps")
     for (mu, spacing), force in facts.coarse.items():
         yield (f"pull-off force, uniform triangles of {spacing:g} beta", mu, exact(force), "R dgamma")
-    for rise, name in zip(facts.omitted, ("without the kernel's singular point", "by triangles"), strict=True):
-        for r in rise.ripples:
+    for ripples, name in zip(facts.omitted, ("without the kernel's singular point", "by triangles"), strict=True):
+        for r in ripples:
             what = f"pull-off force {name}, nodes {r.spacing:g} beta apart"
             yield (what, r.tabor, exact(-r.pull_off), "R dgamma")
 
@@ -143,6 +143,11 @@ def judge(claim: Claim, facts: Facts) -> Judged:
             verdict = reading.unit
             how += [f"but holds {reading.words}", distance(read, reading.allowed, claim.unit)]
     return Judged(claim, computed, verdict, ", ".join(filter(None, how)))
+
+
+def judged(facts: Facts) -> tuple[Judged, ...]:
+    """All claims, each with its verdict."""
+    return tuple(judge(claim, facts) for claim in CLAIMS)
 
 
 def decide(computed: Estimate, allowed: Allowed) -> str:

@@ -18,6 +18,7 @@ CLOSED: Mapping[str, float] = {
     "App. C": criteria.APPENDIX_C,
 }
 """Factors k of the criteria that were derived, and not fitted."""
+Constants = tuple[tuple[str, float | None, Estimate], ...]
 REPULSION_GONE = 10.0  # Tabor parameter above which the exponent is fitted
 
 
@@ -34,59 +35,58 @@ class Criterion(Valued):
     formula: str
     predict: Callable[[Array], Array] | None
     of_approach: bool
-    constants: tuple[tuple[str, float | None, Estimate], ...]
+    constants: Constants
     scatter: float
 
 
 def fit(tabor: Array, central_gap: Array, approach: Array) -> tuple[Criterion, ...]:
     """Refit every criterion by least squares of logarithms to true jumps: gaps and approaches in eps, all (n,)."""
     mu, y, z = tabor, central_gap + 1, 1 - approach
-    k, scatter = _mean(np.log(y**3.5 / (np.pi * np.sqrt(2) * mu**1.5)))
     formula = "(H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2)"
+    left = np.log(y**3.5 / (np.pi * np.sqrt(2) * mu**1.5))
     found = [
-        Criterion(name, formula, partial(criteria.closed_gap, k=value), False, (("k", value, k),), scatter)
+        Criterion(name, formula, partial(criteria.closed_gap, k=value), False, *_fitted(_constant, y, left, k=value))
         for name, value in CLOSED.items()
     ]
-    (log_c, n), scatter = _fitted(_log_repulsion, y, np.log(y**3.5 / mu**1.5), (np.log(6.0), 1.5))
-    constants = ("c", criteria.FIT, _exponential(log_c)), ("n", criteria.FIT_REPULSION, n)
+    fitted = _fitted(_repulsion, y, np.log(y**3.5 / mu**1.5), c=criteria.FIT, n=criteria.FIT_REPULSION)
     formula = "(H0 + 1)^(7/2) = c mu^(3/2) [1 - n/(H0 + 1)^6]"
-    found.append(Criterion("fit (4.5)", formula, criteria.fitted_gap, False, constants, scatter))
-    c, scatter = _mean(np.log(z**3.5 / mu**1.5))
+    found.append(Criterion("fit (4.5)", formula, criteria.fitted_gap, False, *fitted))
+    fitted = _fitted(_constant, z, np.log(z**3.5 / mu**1.5), c=3 * np.pi**2)
     formula = "(|alpha*| + 1)^(7/2) = c mu^(3/2)"
-    constant = ("c", 3 * np.pi**2, c)
-    found.append(Criterion("fit of App. C", formula, criteria.fitted_approach, True, (constant,), scatter))
+    found.append(Criterion("fit of App. C", formula, criteria.fitted_approach, True, *fitted))
     far = mu >= REPULSION_GONE
     if far.sum() >= 4:  # 3/7 by every theory, which no one fitted
-        for name, left, values in (("gap", "H0", y), ("approach", "|alpha*|", z)):
-            (log_c, n), scatter = _fitted(lambda x, a, b: a + b * x, np.log(mu[far]), np.log(values[far]), (1.0, 0.4))
-            powers = ("n", 3 / 7, n), ("c", None, _exponential(log_c))
-            title, formula = f"power of mu, {name}, mu >= {REPULSION_GONE:g}", f"{left} + 1 = c mu^n"
-            found.append(Criterion(title, formula, None, name == "approach", powers, scatter))
+        for name, symbol, values in (("gap", "H0", y), ("approach", "|alpha*|", z)):
+            fitted = _fitted(_power, np.log(mu[far]), np.log(values[far]), c=None, n=3 / 7)
+            title, formula = f"power of mu, {name}, mu >= {REPULSION_GONE:g}", f"{symbol} + 1 = c mu^n"
+            found.append(Criterion(title, formula, None, name == "approach", *fitted))
     return tuple(found)
 
 
-def _log_repulsion(y: Array, log_c: float, n: float) -> Array:
+def _constant(x: Array, log_c: float) -> Array:
+    return np.full_like(x, log_c)
+
+
+def _repulsion(y: Array, log_c: float, n: float) -> Array:
     """Logarithm of c [1 - n/y^6], bounded where there is none."""
     return np.asarray(log_c + np.log(np.maximum(1 - n / y**6, 1e-6)))
 
 
-def _fitted(
-    formula: Callable[..., Array], x: Array, y: Array, start: tuple[float, float]
-) -> tuple[list[Estimate], float]:
-    """Two constants with their standard errors, and the scatter of one value."""
+def _power(log_x: Array, log_c: float, n: float) -> Array:
+    return np.asarray(log_c + n * log_x)
+
+
+def _fitted(formula: Callable[..., Array], x: Array, y: Array, **printed: float | None) -> tuple[Constants, float]:
+    """Constants by name, as printed and refitted with their standard errors, and the scatter of one value.
+
+    The formula has the logarithm of the first constant, and the others as they are.
+    """
+    first, *others = (value or 1.0 for value in printed.values())
+    start = [np.log(first), *others]
     values, covariance = curve_fit(formula, x, y, start)
     errors = np.sqrt(np.diag(covariance))
-    scatter = float(np.std(y - formula(x, *values), ddof=2))
-    return [Estimate(float(v), float(e)) for v, e in zip(values, errors, strict=True)], scatter
-
-
-def _exponential(logarithm: Estimate) -> Estimate:
-    c = float(np.exp(logarithm.value))
-    return Estimate(c, c * logarithm.error)
-
-
-def _mean(logarithms: Array) -> tuple[Estimate, float]:
-    """Geometric mean with its standard error, and the scatter of one value."""
-    scatter = float(np.std(logarithms, ddof=1))
-    value = float(np.exp(np.mean(logarithms)))
-    return Estimate(value, value * scatter / float(np.sqrt(logarithms.size))), scatter
+    scatter = float(np.std(y - formula(x, *values), ddof=len(start)))
+    values[0] = np.exp(values[0])
+    errors[0] *= values[0]
+    fitted = [Estimate(float(v), float(e)) for v, e in zip(values, errors, strict=True)]
+    return tuple(zip(printed, printed.values(), fitted, strict=True)), scatter

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import told
@@ -174,18 +175,12 @@ def elements_beside(lines: Sequence[Line]) -> str:
 
 
 def _farthest(points: Line, line: Line) -> float:
-    """Largest distance of points from a polygon, where that is, in units of their width and height."""
-    at, corners = (np.stack([one.x, one.y])[:, np.isfinite(one.x) & np.isfinite(one.y)] for one in (points, line))
-    if corners.shape[1] < 2:
-        return math.nan
-    low, high = corners.min(axis=1)[:, None], corners.max(axis=1)[:, None]
+    """Largest distance of points from a line, where that is, in units of their width and height."""
+    at, along = (np.stack([one.x, one.y])[:, np.isfinite(one.x) & np.isfinite(one.y)] for one in (points, line))
+    low, high = (end(along, axis=1, initial=init)[:, None] for end, init in ((np.min, np.inf), (np.max, -np.inf)))
     at = at[:, np.all((at >= low) & (at <= high), axis=0)]
-    if at.size == 0:
+    if not at.size:
         return math.nan
-    size = np.maximum(np.ptp(at, axis=1), 1e-12)[:, None]
-    at, corners = at / size, corners / size
-    start, step = corners[:, :-1], np.diff(corners)
-    length = np.maximum(np.sum(step**2, axis=0), 1e-30)
-    offsets = at[:, :, None] - start[:, None]
-    t = np.clip(np.sum(offsets * step[:, None], axis=0) / length, 0, 1)
-    return float(np.hypot(*(offsets - t * step[:, None])).min(axis=1).max())
+    n, size = along.shape[1], np.maximum(np.ptp(at, axis=1), 1e-12)
+    finer = [np.interp(np.linspace(0, n - 1, 100 * n), np.arange(n), values) for values in along]
+    return float(cdist(at.T / size, np.transpose(finer) / size).min(axis=1).max())

@@ -1,21 +1,20 @@
-"""What the claims of the paper are measured on: curves, jumps, criteria and experiments, with their errors."""
+"""Everything computed after the paper as one record: curves, jumps, criteria, tables and experiments, with errors."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-import halfspace
 from fem_adhesion.greenwood.criteria import Criterion
-from fem_adhesion.greenwood.numerics_1997 import Attempt, Rise, false_rise, without_singular_point
+from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple
 from fem_adhesion.greenwood.settings import Settings
-from fem_adhesion.greenwood.tables import PROFILE_CHECKS, Tables
+from fem_adhesion.greenwood.tables import CREDIBLE, Printed
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import Cycle, cycle
+from halfspace.equilibrium.devices import Cycle, Jump
 from halfspace.equilibrium.events import Event
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued
@@ -69,29 +68,78 @@ class PullOff:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Facts(Valued):
-    """What claims are measured on.
+class DrawnState(Valued):
+    """Shape and pressure of one state.
 
-    Paths are by Tabor parameter, `grips` the cycles under fixed grips, `jumps_on` true jumps by rising Tabor parameter,
-    to which the `criteria` are fitted. Relaxations are the iterations of 1997 on 200 nodes, rises, by spacing, the
-    false ones of the pull-off force. At the critical Tabor parameter the curve first has a vertical tangent. `omitted`
-    has the forces with the singular point of the kernel left out, and on the same grid with it; `cores`, by the gap in
-    eps above which another law is the same, how far its jump-on at mu = 5 is from that of the 3-9 law, in eps; `coarse`
-    the pull-off force on uniform triangles by Tabor parameter and spacing, wrong on purpose.
+    Central gap in eps; radii in beta, gap in eps and pressure in dgamma/(mu eps) with their errors, (n,) arrays.
     """
 
+    central_gap: float
+    radii: Array
+    gap: Array
+    pressure: Array
+    gap_error: Array
+    pressure_error: Array
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Facts(Valued):
+    """Everything computed after the paper: what its figures and tables show, and what its claims are measured on.
+
+    Attributes
+    ----------
+    paths, curves, elements : by Tabor parameter
+        Curves on the half-space; those that are drawn, in many points; curves by finite elements.
+    grips, cycles
+        Cycles under fixed grips, by Tabor parameter; those in apparatus of falling stiffness, fixed grips first.
+    jumps_on, criteria
+        True jumps by rising Tabor parameter, and the criteria fitted to them.
+    jumps
+        Jumps by the letters of their ends in Fig. 2a, primed in an apparatus.
+    profiles, more_profiles
+        States of Fig. 4, before the jump and after; further ones in contact and on the way to it.
+    table_1, table_2, profile_checks, asymptote
+        Printed numbers beside computed ones; constants of f = a alpha*^(3/2) - b alpha*^2 with their standard errors.
+    relaxations
+        The iterations of 1997 on 200 nodes.
+    ripples, rises
+        Curves on grids that are too coarse; by spacing, the curves of the false rise of the pull-off force.
+    omitted, coarse
+        Forces with the singular point of the kernel left out, and on the same grid with it; the pull-off force on
+        uniform triangles by Tabor parameter and spacing: wrong on purpose.
+    critical_tabor, border
+        Where the curve first has a vertical tangent; (n, 2): Tabor parameters below it, and the stiffness in
+        R dgamma/eps below which they jump.
+    cores
+        By the gap in eps above which another law is the same, how far its jump-on at mu = 5 is from that of the 3-9
+        law, in eps.
+    """
+
+    settings: Settings
     paths: Mapping[float, EquilibriumPath]
+    curves: Mapping[float, EquilibriumPath]
+    elements: Mapping[float, EquilibriumPath]
     grips: Mapping[float, Cycle]
+    cycles: tuple[Cycle, ...]
     jumps_on: Mapping[float, Event]
     criteria: tuple[Criterion, ...]
+    jumps: Mapping[tuple[str, str], Jump]
     pull_offs: tuple[PullOff, ...]
-    tables: Tables
+    profiles: tuple[DrawnState, ...]
+    more_profiles: tuple[DrawnState, ...]
+    table_1: Sequence[Printed]
+    table_2: Sequence[Printed]
+    profile_checks: Sequence[Printed]
+    asymptote: tuple[Estimate, Estimate]
     relaxations: Sequence[Attempt]
-    rises: Mapping[float, Rise]
-    critical_tabor: Estimate
-    omitted: tuple[Rise, Rise]
-    cores: Mapping[float, Estimate]
+    ripples: tuple[Ripple, ...]
+    rises: Mapping[float, tuple[Ripple, ...]]
+    omitted: tuple[tuple[Ripple, ...], tuple[Ripple, ...]]
     coarse: Mapping[tuple[float, float], float]
+    critical_tabor: Estimate
+    border: Array
+    cores: Mapping[float, Estimate]
+    seconds: float
 
     def number(self, tabor: float, event: str, quantity: str) -> Estimate:
         """A number of an event; approach and gaps in eps, load in R dgamma, contact radius in beta."""
@@ -109,42 +157,17 @@ class Facts(Valued):
 
     def worst(self, row: str) -> float:
         """Largest relative deviation of Table 2 in rows that end so."""
-        return max(abs(p.deviation) for p in self.tables.table_2 if p.row.endswith(row))
+        return max(abs(p.deviation) for p in self.table_2 if p.row.endswith(row))
 
-
-def gathered(known: Mapping[float, EquilibriumPath], settings: Settings, **found: Any) -> Facts:
-    """Facts of what was found, and of what is not known yet: further paths, cycles, other laws, wrong numerics."""
-    loads = {settings.claimed[0]: settings.deepest_load}
-    paths = dict(known) | {
-        mu: halfspace.trace(mu, rtol=settings.table_rtol, to_load=loads.get(mu, 5.0))
-        for mu in settings.claimed
-        if mu not in known
-    }
-    resolved = [paths[mu] for mu in settings.omitted]
-    wrong = {(mu, wide): false_rise([paths[mu]], wide, window=1.5, steps=8).ripples for mu, wide in settings.coarse}
-    return Facts(
-        paths=paths,
-        grips={mu: loop for mu in settings.cycled if (loop := cycle(paths[mu]))},
-        omitted=(
-            false_rise(resolved, settings.omitted_spacing, without_singular_point),
-            false_rise(resolved, settings.omitted_spacing),
-        ),
-        cores=_cores(paths[5.0], settings),
-        coarse={place: -ripples[0].pull_off for place, ripples in wrong.items() if ripples},
-        **found,
-    )
-
-
-def _cores(path: EquilibriumPath, settings: Settings) -> dict[float, Estimate]:
-    """How far the jump-on of laws with another core is from that of a path of the 3-9 law.
-
-    By the gap below which they differ: that of the jump-on itself, and the one that the paper has for it.
-    """
-    jump, more, found = path.events["jump_on"], settings.more_work, {}
-    for gap in (jump.central_gap, float(PROFILE_CHECKS[0][0])):
-        other = halfspace.trace(path.tabor * (1 + more) ** (2 / 3), rtol=settings.table_rtol, law=OtherCore(gap, more))
-        found[gap] = other.events["jump_on"].estimate("approach") - jump.estimate("approach")
-    return found
+    def troubles(self) -> Iterator[str]:
+        """What failed that should not have, a sentence each."""
+        for entry in (*self.table_1, *self.table_2, *self.profile_checks):
+            if not abs(entry.deviation) <= CREDIBLE:
+                yield f"{entry.row} at {entry.column:g}: {entry.computed.value:.6g}, printed {entry.printed}"
+        for p in self.pull_offs:
+            if p.finite_element and not p.agree:
+                yield f"the solvers disagree in the pull-off load at mu = {p.tabor:g}"
+        yield from (f"no {subject} were found" for subject in ("jumps", "cycles") if not getattr(self, subject))
 
 
 # Arithmetic of numbers with errors

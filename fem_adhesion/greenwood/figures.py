@@ -20,7 +20,7 @@ from fem_adhesion.common.numbers import digits, listed, plus_minus, told
 from fem_adhesion.common.page import data_text
 from fem_adhesion.common.style import BLUE, CHAIN, DASHED, DOTTED, GREEN, PINK, RED
 from fem_adhesion.greenwood.drawing import ELEMENTS, HALF_SPACE, Axis, Line, Look, Note, Plot
-from fem_adhesion.greenwood.study import Greenwood1997
+from fem_adhesion.greenwood.facts import Facts
 from halfspace import scaling
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Jump
@@ -29,7 +29,7 @@ from halfspace.theories import closed_forms, dmt
 from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off, carpick_radius
 from halfspace.values import Array, Estimate, States
 
-Made = Callable[[Greenwood1997], Plot]
+Made = Callable[[Facts], Plot]
 Parts = Iterator[Line | Note | str]
 DATA = tomllib.loads(data_text("greenwood", "figures.toml"))
 AXES, LOOKS, LETTERS = (DATA.pop(name) for name in ("axes", "looks", "letters"))
@@ -48,7 +48,7 @@ def figures() -> dict[str, tuple[str, Made]]:
     return {stem: (figure["title"], partial(_plot, figure)) for stem, figure in DATA.items()}
 
 
-def _plot(figure: Mapping[str, Any], study: Greenwood1997) -> Plot:
+def _plot(figure: Mapping[str, Any], study: Facts) -> Plot:
     """Plot of an entry of the file."""
     x, y = (Axis(**AXES[name], limits=tuple(limits)) for name, *limits in (figure["x"], figure["y"]))
     label, scale = figure.get("above", ("", ""))
@@ -71,34 +71,39 @@ def points(name: str, states: EquilibriumPath | States, tabor: float, plot: Plot
     return Line(name, tabor, u, v, {"color": look_of("tabor", tabor)["color"], **look}, u_error, v_error)
 
 
-def half_space(study: Greenwood1997, plot: Plot, tabors: Sequence[float]) -> Parts:
+def half_space(study: Facts, plot: Plot, tabors: Sequence[float]) -> Parts:
     """Computed curves; stretches that are unstable under fixed grips are dotted."""
     for mu in tabors:
         path = study.curves[mu]
         yield replace(points(HALF_SPACE, path, mu, plot, look_of("tabor", mu, linewidth=1.9)), dotted=~path.stable)
 
 
-def elements(study: Greenwood1997, plot: Plot, tabors: Sequence[float]) -> Parts:
+def elements(study: Facts, plot: Plot, tabors: Sequence[float]) -> Parts:
     """Finite-element points, where there are any."""
     yield from (points(ELEMENTS, study.elements[mu], mu, plot) for mu in tabors if mu in study.elements)
 
 
-def specified(study: Greenwood1997, plot: Plot, tabors: Sequence[float]) -> Parts:
+def specified(study: Facts, plot: Plot, tabors: Sequence[float]) -> Parts:
     """States found by prescribing the central gap."""
-    yield from (points("central gap specified", study.specified[mu], mu, plot) for mu in tabors)
+    yield from (points("central gap specified", _specified(study, mu), mu, plot) for mu in tabors)
 
 
-def turns(study: Greenwood1997, _: Plot, tabors: Sequence[float]) -> Parts:
+def _specified(study: Facts, tabor: float) -> States:
+    return study.paths[tabor].at(central_gap=study.settings.specified[tabor])
+
+
+def turns(study: Facts, _: Plot, tabors: Sequence[float]) -> Parts:
     """How often the approach turns."""
     found = [f"{sum(map(is_fold, study.curves[mu].events))} at mu = {mu:g}" for mu in tabors]
     yield f"The approach turns so many times: {listed(found)}."
 
 
-def folds(study: Greenwood1997, plot: Plot, tabor: float) -> Parts:
+def folds(study: Facts, plot: Plot, tabor: float) -> Parts:
     """The unstable branch, and the folds between jump-on and jump-off where the curve winds."""
     look: Look = {"linestyle": DOTTED, "linewidth": 1.9}
-    yield points("unstable branch", study.specified[tabor], tabor, plot, look)
-    rows = [(f.approach, f.central_gap, f.approach_error, f.central_gap_error) for f in study.folds]
+    yield points("unstable branch", _specified(study, tabor), tabor, plot, look)
+    found = [event for name, event in study.paths[tabor].events.items() if is_fold(name)]
+    rows = [(f.approach, f.central_gap, f.approach_error, f.central_gap_error) for f in found]
     x, y, dx, dy = np.reshape(rows, (-1, 4)).T
     yield Line("folds", tabor, x, y, {**MARKS, "color": "black"}, dx, dy, label="folds")
     yield from ((str(n), (x[n - 1], y[n - 1])) for n in range(2, len(rows)))
@@ -106,7 +111,7 @@ def folds(study: Greenwood1997, plot: Plot, tabor: float) -> Parts:
     yield told(see, x)
 
 
-def profiles(study: Greenwood1997, plot: Plot, which: str) -> Parts:
+def profiles(study: Facts, plot: Plot, which: str) -> Parts:
     """Gap or pressure of states along the radius."""
     mu, quantity = study.settings.winding_at, plot.y.quantity
     for number, state in enumerate(getattr(study, which)):
@@ -125,7 +130,7 @@ def jump_line(name: str, tabor: float, jump: Jump, look: Look, label: str = "") 
     return Line(name, tabor, approach, load, look, dx, dy, label=label, arrow=True)
 
 
-def jumps(study: Greenwood1997, _: Plot, margins: Sequence[float]) -> Parts:
+def jumps(study: Facts, _: Plot, margins: Sequence[float]) -> Parts:
     """The jumps at fixed grips and in an apparatus, along its load lines."""
     mu, k = study.settings.jumps_at, study.settings.apparatus
     for letters, jump in study.jumps.items():
@@ -146,7 +151,7 @@ def jumps(study: Greenwood1997, _: Plot, margins: Sequence[float]) -> Parts:
             yield Line(f"load line of {letters[0]}", mu, approach, load, look, label=label)
 
 
-def apparatus(study: Greenwood1997, _: Plot, stiffnesses: Sequence[float]) -> Parts:
+def apparatus(study: Facts, _: Plot, stiffnesses: Sequence[float]) -> Parts:
     """Jumps in apparatus of several stiffnesses."""
     for cycle in study.cycles:
         if (k := cycle.stiffness) in stiffnesses:
@@ -158,7 +163,7 @@ def apparatus(study: Greenwood1997, _: Plot, stiffnesses: Sequence[float]) -> Pa
             yield jump_line(f"{name}, jump off", study.settings.devices_at, cycle.jump_off, look)
 
 
-def border(study: Greenwood1997, _: Plot, places: Sequence[tuple[float, float]]) -> Parts:
+def border(study: Facts, _: Plot, places: Sequence[tuple[float, float]]) -> Parts:
     """Stiffness below which a contact jumps, against the Tabor parameter; words at three places."""
     critical = study.critical_tabor
     tabor, least = study.border.T
@@ -196,7 +201,7 @@ THEORIES: Mapping[str, Callable[[Array, float], Mapping[str, Array]]] = {
 
 
 def theory(
-    _: Greenwood1997,
+    _: Facts,
     plot: Plot,
     name: str,
     over: tuple[float, float, int],
@@ -215,7 +220,7 @@ def theory(
     yield Line(name, tabor, x, y, look_of("theory", name, **colour, **(look or {})), label=label)
 
 
-def carpick(study: Greenwood1997, _: Plot, tabors: Sequence[float]) -> Parts:
+def carpick(study: Facts, _: Plot, tabors: Sequence[float]) -> Parts:
     """Contact radii after Carpick et al., and how far they are off under no load."""
     off = []
     for mu in tabors:
@@ -231,7 +236,7 @@ def carpick(study: Greenwood1997, _: Plot, tabors: Sequence[float]) -> Parts:
 
 
 def pull_offs(
-    study: Greenwood1997, _: Plot, solver: str, look: Look = MARKS, label: str | None = None, above: float = 0.0
+    study: Facts, _: Plot, solver: str, look: Look = MARKS, label: str | None = None, above: float = 0.0
 ) -> Parts:
     """Pull-off forces by a solver with their errors, above a Tabor parameter."""
     found: list[tuple[float, Estimate | None]] = [(p.tabor, getattr(p, solver)) for p in study.pull_offs]
@@ -241,7 +246,7 @@ def pull_offs(
     yield Line(name, None, tabor, force, {"color": BLUE, **look}, None, error, label=label)
 
 
-def pull_off_theories(study: Greenwood1997, _: Plot, attard: Sequence[tuple[float, float]]) -> Parts:
+def pull_off_theories(study: Facts, _: Plot, attard: Sequence[tuple[float, float]]) -> Parts:
     """Pull-off forces after Maugis, by the values of Attard & Parker over pi that [G97] quotes, and in the limits."""
     tabor = np.array([p.tabor for p in study.pull_offs])
     maugis = np.array([-MaugisDugdale.matched(mu).pull_off().load for mu in tabor])
@@ -253,7 +258,7 @@ def pull_off_theories(study: Greenwood1997, _: Plot, attard: Sequence[tuple[floa
         yield Line(name, None, tabor, np.full_like(tabor, -load), look_of("theory", name, linewidth=1.0))
 
 
-def criteria(study: Greenwood1997, _: Plot, quantity: str) -> Parts:
+def criteria(study: Facts, _: Plot, quantity: str) -> Parts:
     """Central gap or approach at jump-on plus one over mu^(3/7): true jumps as markers, and what criteria predict."""
     sign = 1 if quantity == "central_gap" else -1
 
@@ -270,7 +275,7 @@ def criteria(study: Greenwood1997, _: Plot, quantity: str) -> Parts:
             yield Line(one.name, None, tabor, scaled(one.predict(tabor), tabor), look_of("criterion", one.name))
 
 
-def coarse(study: Greenwood1997, _: Plot, which: str) -> Parts:
+def coarse(study: Facts, _: Plot, which: str) -> Parts:
     """What uniform triangles too wide give, wrong on purpose, so without an error: pull-off forces, or curves."""
 
     def line(spacing: float, tabor: float | None, x: Array, y: Array) -> Line:
@@ -278,8 +283,8 @@ def coarse(study: Greenwood1997, _: Plot, which: str) -> Parts:
         return Line(f"uniform triangles {spacing:g} beta", tabor, x, y, look, label=label)
 
     if which == "rises":
-        for spacing, rise in study.rises.items():
-            yield line(spacing, None, *np.reshape([(r.tabor, -r.pull_off) for r in rise.ripples], (-1, 2)).T)
+        for spacing, ripples in study.rises.items():
+            yield line(spacing, None, *np.reshape([(r.tabor, -r.pull_off) for r in ripples], (-1, 2)).T)
         return
     yield from (line(r.spacing, r.tabor, r.approach, r.load) for r in study.ripples)
     least = listed([f"{-r.pull_off:.3f} at {r.spacing:g} beta" for r in study.ripples])

@@ -47,14 +47,6 @@ class Ripple(Valued):
         return float(self.load.min())
 
 
-@dataclass(frozen=True)
-class Rise:
-    """Pull-off at rising Tabor parameters on one spacing, and why it ends where it does."""
-
-    ripples: tuple[Ripple, ...]
-    ended: str
-
-
 def without_singular_point(nodes: Array) -> ElasticOperator:
     """Half-space by a sum of the kernel over uniform nodes (q,) in beta that leaves out the node itself.
 
@@ -106,7 +98,7 @@ def false_rise(
     window: float = 2.0,
     steps: int = 12,
     enough: float = -7.5,
-) -> Rise:
+) -> tuple[Ripple, ...]:
     """Pull-off at rising Tabor parameters on one spacing, until the rise is proved or the grid has no solution.
 
     The window is in spacings: the period of the ripple is one. Only the least load matters, so that a dozen steps of
@@ -116,11 +108,11 @@ def false_rise(
     for path in paths:
         uneven = tried(ripple, path, spacing, window * spacing, steps, body)
         if isinstance(uneven, Unsolved):
-            return Rise(tuple(found), f"no solution at mu = {path.tabor:.3g}: {uneven.reason}")
+            break
         found.append(uneven)
         if uneven.pull_off < enough:
-            return Rise(tuple(found), f"the load is below {enough:g} R dgamma")
-    return Rise(tuple(found), "no larger mu was asked for")
+            break
+    return tuple(found)
 
 
 # Iterations

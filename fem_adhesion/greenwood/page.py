@@ -14,10 +14,10 @@ from fem_adhesion.common.page import Columns, Section, Table, bullets, said, tit
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import claims
 from fem_adhesion.greenwood.drawing import Plot, drawn, elements_beside, table
-from fem_adhesion.greenwood.facts import PullOff
+from fem_adhesion.greenwood.facts import Facts, PullOff
 from fem_adhesion.greenwood.figures import figures
-from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
-from fem_adhesion.greenwood.study import Greenwood1997
+from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt, Ripple
+from fem_adhesion.greenwood.settings import FULL
 from fem_adhesion.greenwood.tables import Printed, is_rounded
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event
@@ -28,16 +28,16 @@ FIGURES = figures()
 """Title of each figure, and what makes its plot, by the name of its files: those of the paper, and further ones."""
 
 
-def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = lambda _: None) -> None:
+def write(study: Facts, directory: Path, begin: Callable[[str], None] = lambda _: None) -> None:
     """Write every figure as SVG, PNG and CSV, every table and the captions as CSV, and ``index.html``.
 
     Give it a directory made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none;
     `begin` is called with what is drawn next, once for each of `FIGURES`.
     """
-    plots = {stem: made(study) for stem, (_, made) in FIGURES.items()}
-    pictures = [_picture(study, stem, plot) for stem, plot in plots.items()]
+    plots, judged = {stem: made(study) for stem, (_, made) in FIGURES.items()}, claims.judged(study)
+    pictures = [_picture(stem, plot, judged) for stem, plot in plots.items()]
     draw(pictures, study, directory, begin)
-    written, held = list(tables(study)), claims.tables(study.claims, study)
+    written, held = list(tables(study)), claims.tables(judged, study)
     data = [table(stem, FIGURES[stem][0], plot) for stem, plot in plots.items()]
     write_csv([*held, *written, *data, captions(pictures, study)], directory)
     sections = [
@@ -45,19 +45,19 @@ def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = 
         Section("held", "Claims of the paper, held against the numbers", tables=held),
         Section("tables", "Tables", tables=written),
     ]
-    title = f"Greenwood (1997), computed again{', quick run' if study.quick else ''}"
+    title = f"Greenwood (1997), computed again{', quick run' if study.settings != FULL else ''}"
     write_page(directory, title, list(lead(study)), sections, f"{study.seconds:.1f} s, drawing apart")
 
 
-def _picture(study: Greenwood1997, stem: str, plot: Plot) -> Picture[Greenwood1997]:
+def _picture(stem: str, plot: Plot, judged: Sequence[claims.Judged]) -> Picture[Facts]:
     """A plot with what is to be seen: its own sentences, how near finite elements are, and the claims it shows."""
-    see = [*plot.see, elements_beside(plot.lines), claims.caption(stem, study.claims)]
+    see = [*plot.see, elements_beside(plot.lines), claims.caption(stem, judged)]
     return Picture(stem, FIGURES[stem][0], lambda _: drawn(plot), lambda _: see)
 
 
-def lead(study: Greenwood1997) -> Iterator[str]:
+def lead(study: Facts) -> Iterator[str]:
     """What kind of run it was, what failed that should not have, and what all figures have in common."""
-    if study.quick:
+    if study.settings != FULL:
         yield said("greenwood", "lead", "quick")
     if troubles := list(study.troubles()):
         failed = Markup("<strong>FAILED where it should not have, {} times:</strong>").format(len(troubles))
@@ -68,14 +68,14 @@ def lead(study: Greenwood1997) -> Iterator[str]:
         yield Markup(said("greenwood", "lead", "critical", mu=plus_minus(study.critical_tabor)))
 
 
-def tables(study: Greenwood1997) -> Iterator[Table]:
+def tables(study: Facts) -> Iterator[Table]:
     """All tables in the order of the page."""
-    a, b = study.tables.asymptote
+    a, b = study.asymptote
     fit = said("greenwood", "table_1", "fit", a=plus_minus(a), b=plus_minus(b))
-    yield _printed("table_1", told(fit, a.value, b.value), "alpha*", study.tables.table_1)
-    yield _printed("table_2", said("greenwood", "table_2", "fit"), "mu", study.tables.table_2)
+    yield _printed("table_1", told(fit, a.value, b.value), "alpha*", study.table_1)
+    yield _printed("table_2", said("greenwood", "table_2", "fit"), "mu", study.table_2)
     fit, mu = said("greenwood", "fig_4_checks", "fit"), study.settings.winding_at
-    yield _printed("fig_4_checks", fit, "gap H", study.tables.profile_checks, mu=mu)
+    yield _printed("fig_4_checks", fit, "gap H", study.profile_checks, mu=mu)
     yield _jumps(study)
     yield _cycles(study)
     yield _relaxations(study.relaxations)
@@ -110,7 +110,7 @@ def _printed(stem: str, see: str, column: str, entries: Sequence[Printed], **num
     return Table.of(stem, said("greenwood", stem, "title", **numbers), joined(*agreement, see), entries, columns)
 
 
-def _jumps(study: Greenwood1997) -> Table:
+def _jumps(study: Facts) -> Table:
     def of(end: str, quantity: str) -> Callable[[tuple[str, str]], tuple[str, str]]:
         return lambda ends: _cells(getattr(study.jumps[ends], end).estimate(quantity))
 
@@ -124,7 +124,7 @@ def _jumps(study: Greenwood1997) -> Table:
     return Table.of(stem, title, see if study.jumps else said("greenwood", "jumps", "none"), study.jumps, columns)
 
 
-def _cycles(study: Greenwood1997) -> Table:
+def _cycles(study: Facts) -> Table:
     """Both jumps and the loss of every apparatus."""
     ends = ("jump on", "landing in contact", "jump off", "landing apart")
     quantities = ("alpha*, eps", "error, eps", "W, R dgamma", "error, R dgamma")
@@ -158,19 +158,17 @@ def _relaxations(attempts: Sequence[Attempt]) -> Table:
     return Table.of(*titled("greenwood", "relaxation", nodes=NODES, sweeps=joined(*see)), attempts, columns)
 
 
-def _rises(study: Greenwood1997) -> Table:
+def _rises(study: Facts) -> Table:
     """Least loads met on grids that are too coarse, wrong on purpose."""
-    rows = [
-        (f"{spacing:g}", f"{r.tabor:.6g}", f"{r.pull_off:.4f}")
-        for spacing, rise in study.rises.items()
-        for r in rise.ripples
-    ]
-    ends = joined(*(f"{spacing:g} beta: ended as {rise.ended}." for spacing, rise in study.rises.items()))
-    columns = ("spacing, beta", "mu", "least load, R dgamma")
-    return Table(*titled("greenwood", "coarse_grids", ends=ends), columns, rows)
+    columns: Columns[tuple[float, Ripple]] = {
+        "spacing, beta": lambda met: f"{met[0]:g}",
+        ("mu", "least load, R dgamma"): lambda met: (f"{met[1].tabor:.6g}", f"{met[1].pull_off:.4f}"),
+    }
+    met = [(spacing, each) for spacing, ripples in study.rises.items() for each in ripples]
+    return Table.of(*titled("greenwood", "coarse_grids"), met, columns)
 
 
-def _true_jumps(study: Greenwood1997) -> Table:
+def _true_jumps(study: Facts) -> Table:
     """True jumps beside what the criteria predict for them."""
     usable = {f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps": c.predict for c in study.criteria if c.predict}
     columns: Columns[tuple[float, Event]] = {
@@ -183,7 +181,7 @@ def _true_jumps(study: Greenwood1997) -> Table:
     return Table.of(*titled("greenwood", "criteria"), study.jumps_on.items(), columns)
 
 
-def _constants(study: Greenwood1997) -> Table:
+def _constants(study: Facts) -> Table:
     columns = ("criterion", "formula", "constant", "printed", "refitted", "standard error", "scatter of ln(left side)")
     rows = [
         (c.name, c.formula, name, "" if printed is None else f"{printed:.6g}", *_cells(fitted), f"{c.scatter:.1e}")

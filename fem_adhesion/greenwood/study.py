@@ -6,8 +6,7 @@ J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -15,103 +14,31 @@ import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.common.fold_birth import FIRST, critical_stiffness, tabor_of
 from fem_adhesion.fields import gaps_at
-from fem_adhesion.greenwood import facts, tables
-from fem_adhesion.greenwood.claims import CLAIMS, Judged, judge
+from fem_adhesion.greenwood import tables
 from fem_adhesion.greenwood.criteria import fit
-from fem_adhesion.greenwood.facts import Facts, PullOff
-from fem_adhesion.greenwood.numerics_1997 import Ripple, attempts, false_rise, ripple
+from fem_adhesion.greenwood.facts import DrawnState, Facts, OtherCore, PullOff
+from fem_adhesion.greenwood.numerics_1997 import attempts, false_rise, ripple, without_singular_point
 from fem_adhesion.greenwood.settings import FULL, QUICK, Settings
-from fem_adhesion.greenwood.tables import Tables
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import Cycle, Jump, cycle
-from halfspace.equilibrium.events import Event, is_fold
+from halfspace.equilibrium.devices import Jump, cycle
 from halfspace.laws import LENNARD_JONES
-from halfspace.values import Array, Estimate, States, Valued
+from halfspace.values import Estimate
 
 PROFILE_RADII = np.linspace(0.0, 4.0, 201)  # beta, and closer to the spike at the contact edge:
 PROFILE_OFFSETS = np.concatenate([sign * np.geomspace(1e-3, 0.3, 40) for sign in (-1, 1)])
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class DrawnState(Valued):
-    """Shape and pressure of one state.
-
-    Central gap in eps; radii in beta, gap in eps and pressure in dgamma/(mu eps) with their errors, (n,) arrays.
-    """
-
-    central_gap: float
-    radii: Array
-    gap: Array
-    pressure: Array
-    gap_error: Array
-    pressure_error: Array
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Greenwood1997(Facts):
-    """What claims are measured on, and what else the figures and tables show.
-
-    Curves on the half-space and by finite elements are by Tabor parameter, and `specified` states of prescribed central
-    gap; `jumps` are those at mu = 1, by the letters of their ends in Fig. 2a, primed in an apparatus; `folds` all folds
-    at mu = 5, in order. There are the `profiles` of Fig. 4, before the jump and after, and `more_profiles` in contact
-    and on the way to it. Ripples are curves at mu = 2 on grids that are too coarse, cycles those in apparatus of
-    falling stiffness at mu = 2, fixed grips first. The `border` (n, 2) has Tabor parameters below the critical one, and
-    the stiffness in R dgamma/eps below which they jump. Claims are those of the paper, each with its verdict. Seconds
-    are those of the computation.
-    """
-
-    settings: Settings
-    curves: Mapping[float, EquilibriumPath]
-    elements: Mapping[float, EquilibriumPath]
-    specified: Mapping[float, States]
-    jumps: Mapping[tuple[str, str], Jump]
-    folds: tuple[Event, ...]
-    profiles: tuple[DrawnState, ...]
-    more_profiles: tuple[DrawnState, ...]
-    ripples: tuple[Ripple, ...]
-    cycles: tuple[Cycle, ...]
-    border: Array
-    claims: tuple[Judged, ...]
-    seconds: float
-
-    @property
-    def quick(self) -> bool:
-        """Whether fewer points were taken than can be."""
-        return self.settings is not FULL
-
-    def troubles(self) -> Iterator[str]:
-        """What failed that should not have, a sentence each."""
-        printed = self.tables
-        for entry in (*printed.table_1, *printed.table_2, *printed.profile_checks):
-            if not abs(entry.deviation) <= tables.CREDIBLE:
-                yield f"{entry.row} at {entry.column:g}: {entry.computed.value:.6g}, printed {entry.printed}"
-        for p in self.pull_offs:
-            if p.finite_element and not p.agree:
-                yield f"the solvers disagree in the pull-off load at mu = {p.tabor:g}"
-        for subject, found in (("jumps", self.jumps), ("cycles", self.cycles)):
-            if not found:
-                yield f"no {subject} were found"
-
-
 SUBJECTS = (
-    "curves",
-    "finite elements",
-    "criteria",
-    "pull-off",
-    "false rise",
-    "tables",
-    "relaxations",
-    "devices",
-    "critical Tabor parameter",
-    "claims",
+    *("curves", "finite elements", "criteria", "pull-off", "false rise"),
+    *("tables", "relaxations", "devices", "claims"),
 )
 
 
-def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: None) -> Greenwood1997:
+def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: None) -> Facts:
     """Compute everything; `begin` is called with each of `SUBJECTS`, in order, as its work begins.
 
     A quick study takes fewer points, and a tolerance of 1e-5 in the tables.
@@ -119,7 +46,7 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     began, given = time.perf_counter(), QUICK if quick else FULL
     begin("curves")
     traced = {mu: halfspace.trace(mu, rtol=given.rtol, to_load=given.loads.get(mu, COMPRESSION)) for mu in given.drawn}
-    drawn = {mu: path.resampled(given.points) for mu, path in traced.items()}
+    curves = {mu: path.resampled(given.points) for mu, path in traced.items()}
     begin("finite elements")
     elements = {mu: _by_elements(mu) for mu in given.elements}
     begin("criteria")
@@ -128,47 +55,52 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     begin("pull-off")
     pull_offs = tuple(_pull_off(mu, given) for mu in sorted({*given.pull_offs, *given.element_pull_offs}))
     begin("false rise")
-    ripples = tuple(ripple(drawn[given.ripple_at], spacing, given.ripple_window) for spacing in given.ripples)
     resolved = [halfspace.trace(mu, rtol=1e-4) for mu in given.rising]
     rises = {spacing: false_rise(resolved, spacing) for spacing in given.rises}
     begin("tables")
-    paths = {mu: halfspace.trace(mu, rtol=given.table_rtol) for mu in tables.TABORS}
-    printed = Tables(tables.table_1(), tables.table_2(paths), tables.profile_checks(), tables.excess_asymptote())
+    printed = {mu: halfspace.trace(mu, rtol=given.table_rtol) for mu in tables.TABORS}
     begin("relaxations")
     relaxations = tuple(attempts(given.most_sweeps))
     begin("devices")
     folding = halfspace.trace(given.devices_at, rtol=given.table_rtol)
-    cycles = tuple(found for k in given.stiffnesses if (found := cycle(folding, k)))
     tabors = tabor_of(FIRST) * (1 - np.geomspace(0.999, 1e-3, 40))
-    border = np.array([[mu, critical_stiffness(float(mu))] for mu in tabors])
-    begin("critical Tabor parameter")
-    critical_tabor = Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7)))
     begin("claims")
-    known = facts.gathered(
-        traced | paths,
-        given,
+    paths, loads = traced | printed, {given.claimed[0]: given.deepest_load}
+    paths |= {
+        mu: halfspace.trace(mu, rtol=given.table_rtol, to_load=loads.get(mu, COMPRESSION))
+        for mu in given.claimed
+        if mu not in paths
+    }
+    omitting = [paths[mu] for mu in given.omitted]
+    wrong = {(mu, wide): false_rise([paths[mu]], wide, window=1.5, steps=8) for mu, wide in given.coarse}
+    return Facts(
+        settings=given,
+        paths=paths,
+        curves=curves,
+        elements=elements,
+        grips={mu: loop for mu in given.cycled if (loop := cycle(paths[mu]))},
+        cycles=tuple(found for k in given.stiffnesses if (found := cycle(folding, k))),
         jumps_on=jumps_on,
         criteria=fit(np.array(given.jumps), gaps, approaches),
-        pull_offs=pull_offs,
-        tables=printed,
-        relaxations=relaxations,
-        rises=rises,
-        critical_tabor=critical_tabor,
-    )
-    return Greenwood1997(
-        **vars(known),
-        settings=given,
-        curves=drawn,
-        elements=elements,
-        specified={mu: traced[mu].at(central_gap=gaps) for mu, gaps in given.specified.items()},
         jumps=_jumps(given),
-        folds=tuple(event for name, event in traced[given.winding_at].events.items() if is_fold(name)),
+        pull_offs=pull_offs,
         profiles=_profiles(given, [float(gap) for gap, _ in tables.PROFILE_CHECKS]),
         more_profiles=_profiles(given, given.profile_gaps),
-        ripples=ripples,
-        cycles=cycles,
-        border=border,
-        claims=tuple(judge(claim, known) for claim in CLAIMS),
+        table_1=tables.table_1(),
+        table_2=tables.table_2(printed),
+        profile_checks=tables.profile_checks(),
+        asymptote=tables.excess_asymptote(),
+        relaxations=relaxations,
+        ripples=tuple(ripple(curves[given.ripple_at], spacing, given.ripple_window) for spacing in given.ripples),
+        rises=rises,
+        omitted=(
+            false_rise(omitting, given.omitted_spacing, without_singular_point),
+            false_rise(omitting, given.omitted_spacing),
+        ),
+        coarse={place: -ripples[0].pull_off for place, ripples in wrong.items() if ripples},
+        critical_tabor=Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7))),
+        border=np.array([[mu, critical_stiffness(float(mu))] for mu in tabors]),
+        cores=_cores(paths[5.0], given),
         seconds=time.perf_counter() - began,
     )
 
@@ -181,6 +113,19 @@ def _pull_off(tabor: float, given: Settings) -> PullOff:
     by_elements = tabor in given.element_pull_offs
     paths = [halfspace.trace(tabor, rtol=1e-5), *([_by_elements(tabor)] if by_elements else [])]
     return PullOff(tabor, *(path.events["pull_off"].estimate("load") for path in paths))
+
+
+def _cores(path: EquilibriumPath, given: Settings) -> dict[float, Estimate]:
+    """How far the jump-on of laws with another core is from that of a path of the 3-9 law.
+
+    By the gap below which they differ: that of the jump-on itself, and the one that the paper has for it.
+    """
+    jump, more, found = path.events["jump_on"], given.more_work, {}
+    for gap in (jump.central_gap, float(tables.PROFILE_CHECKS[0][0])):
+        law = OtherCore(gap, more)
+        other = halfspace.trace(path.tabor * (1 + more) ** (2 / 3), rtol=given.table_rtol, law=law)
+        found[gap] = other.events["jump_on"].estimate("approach") - jump.estimate("approach")
+    return found
 
 
 def _jumps(given: Settings) -> dict[tuple[str, str], Jump]:

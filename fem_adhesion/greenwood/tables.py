@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,19 +49,6 @@ class Printed:
     def deviation(self) -> float:
         """Computed less printed value, relative."""
         return (self.computed.value - float(self.printed)) / (self.scale or float(self.printed))
-
-
-@dataclass(frozen=True)
-class Tables:
-    """Printed beside computed: both tables, and the pressures printed with Fig. 4.
-
-    `asymptote` has the constants of f = a alpha*^(3/2) - b alpha*^2, with the standard errors of their fit.
-    """
-
-    table_1: Sequence[Printed]
-    table_2: Sequence[Printed]
-    profile_checks: Sequence[Printed]
-    asymptote: tuple[Estimate, Estimate]
 
 
 def table_1() -> list[Printed]:

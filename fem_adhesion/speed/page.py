@@ -77,7 +77,7 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
     for axes, family in zip(panels, FAMILIES, strict=True):
         draw_rungs(axes, pareto_front(study.rungs, quantity), "Pareto front, all methods", **FRONT)
         if study.earlier:
-            front = pareto_front(study.earlier.rungs, quantity)
+            front = pareto_front(study.earlier[1], quantity)
             draw_rungs(axes, front, "that of the earlier run, in yardsticks", study.yardstick, **BESIDE)
         axes.axhline(study.uncertainty(family, quantity), label="uncertainty of the truth", **FLOOR)
         methods = [method for method in study.methods if method.family == family]
@@ -225,16 +225,16 @@ def _costs(study: SpeedStudy, quantity: str | None) -> Table:
 
 def _beside(study: SpeedStudy, earlier: Earlier, quantity: str) -> Table:
     """Yardsticks of the fastest method to each tolerance, of the earlier run and of this one."""
-    rows = []
+    (name, known), rows = earlier, []
     for tolerance in (10.0**-digits for digits in range(2, 9)):
-        before, now = (cheapest(rungs, tolerance, quantity) for rungs in (earlier.rungs, study.rungs))
+        before, now = (cheapest(rungs, tolerance, quantity) for rungs in (known, study.rungs))
         costs = before.seconds if before else math.nan, now.seconds / study.yardstick if now else math.nan
         cells = [
             f"{cost:.0f} ({rung.method}, {rung.setting})" if rung else "-"
             for cost, rung in zip(costs, (before, now), strict=True)
         ]
         rows.append([f"{tolerance:.0e}", *cells, _number(costs[1] / costs[0], "{:.2f}") or "-"])
-    title = said("speed", "beside", "title", quantity=quantity, name=earlier.name)
+    title = said("speed", "beside", "title", quantity=quantity, name=name)
     return Table("", title, "", ("tolerance", "earlier", "now", "now / earlier"), rows)
 
 
@@ -262,26 +262,18 @@ def _growths(study: SpeedStudy) -> Table:
 
 def read_earlier(path: Path, tabor: float) -> Earlier:
     """Read ``speed.csv`` of an earlier run at the same Tabor parameter, or raise InputError."""
-
-    def refused(which: str, why: object = "") -> InputError:
-        return InputError(said("speed", "earlier", which, path=path, why=why, tabor=tabor))
-
     try:
         with path.open(newline="") as file:
             rows = list(csv.DictReader(file))
         at = {float(row["tabor"]) for row in rows}
-        rungs = tuple(_rung(row) for row in rows if row["outcome"] == "converged")
-    except OSError as error:
-        raise refused("unread", error.strerror) from None
-    except KeyError as error:
-        raise refused("column", error) from None
-    except (TypeError, ValueError, csv.Error) as error:
-        raise refused("no_table", error) from None
-    if not rungs:
-        raise refused("empty")
-    if at != {tabor}:
-        raise refused("other", ", ".join(f"{t:g}" for t in sorted(at)))
-    return Earlier(str(path), rungs)
+        rungs = [_rung(row) for row in rows if row["outcome"] == "converged"]
+    except (OSError, KeyError, TypeError, ValueError, csv.Error) as error:
+        why = error.strerror if isinstance(error, OSError) else f"{type(error).__name__} {error}"
+        raise InputError(said("speed", "earlier", "unread", path=path, why=why)) from None
+    if not rungs or at != {tabor}:
+        known = ", ".join(f"{t:g}" for t in sorted(at))
+        raise InputError(said("speed", "earlier", "other", path=path, rungs=len(rungs), known=known, tabor=tabor))
+    return str(path), rungs
 
 
 def _rung(row: Mapping[str, str]) -> Timing:

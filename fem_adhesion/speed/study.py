@@ -134,15 +134,11 @@ class Growth:
         return slope(np.array(self.at), np.array(self.seconds))
 
 
-@dataclass(frozen=True)
-class Earlier:
-    """Rungs of an earlier run that have a result, by the name of its file; their seconds are yardsticks.
+Earlier = tuple[str, Sequence[Timing]]
+"""Name of the file of an earlier run, and its rungs that have a result; their seconds are yardsticks.
 
-    Machines differ, and one differs from hour to hour: what is compared is time in yardsticks, each of its own run.
-    """
-
-    name: str
-    rungs: tuple[Timing, ...]
+Machines differ, and one differs from hour to hour: what is compared is time in yardsticks, each of its own run.
+"""
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from fem_adhesion.finite_sphere import chart as chart_module
 from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.bulk import bulk_compliance, excess_compliance
 from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CRITICAL, MODELS, Record, case_of
+from fem_adhesion.finite_sphere.chart import Field, contour, field_of, safe_from
 from fem_adhesion.finite_sphere.fit import FIXED_GRIPS, leading_terms
 from fem_adhesion.finite_sphere.page import SHOWN
-from fem_adhesion.finite_sphere.plane import Field, contour, field_of, safe_from
 from fem_adhesion.finite_sphere.study import Study, plan
 from fem_adhesion.finite_sphere.table import CAUSES, borders, rows, write_tables
 from halfspace.elastic import grid

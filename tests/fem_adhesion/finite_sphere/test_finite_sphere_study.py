@@ -35,9 +35,9 @@ from fem_adhesion.finite_sphere.cases import (
     quantities_of,
     to_plain,
 )
+from fem_adhesion.finite_sphere.chart import materials
 from fem_adhesion.finite_sphere.fit import SOFT_PULL_OFF, leading_terms
 from fem_adhesion.finite_sphere.page import all_tables
-from fem_adhesion.finite_sphere.plane import materials
 from fem_adhesion.finite_sphere.study import TABORS, Study, plan, run
 from fem_adhesion.finite_sphere.table import (
     COLUMNS,
@@ -255,32 +255,19 @@ def changed(value, keys, content):
 LOAD = ("values", "pull_off_load")
 TAMPERED = [
     ((*LOAD, "value"), "-5"),
-    ((*LOAD, "value"), True),
     ((*LOAD, "error"), None),
-    ((*LOAD, "error"), -1e-3),
-    (LOAD, 3.0),
     (("values",), None),
-    (("values", "weight"), {"value": 1.0, "error": 0.0}),
     (("status",), "died"),
-    (("status",), "refused"),
-    (("seconds",), "long"),
-    (("kind",), None),
+    ((*LOAD, "value"), math.nan),
+    ((*LOAD, "value"), -5.000001),
 ]
 
 
-@pytest.mark.parametrize(("keys", "value"), [*TAMPERED, ((*LOAD, "value"), math.nan), ((*LOAD, "value"), -5.000001)])
+@pytest.mark.parametrize(("keys", "value"), TAMPERED)
 def test_a_value_that_was_changed_is_computed_again(tmp_path, keys, value):
     file, record = one_stored(tmp_path)
     file.write_text(json.dumps(changed(value, ("result", *keys), json.loads(file.read_text()))))
     computed_again(tmp_path, record, f"{file} is computed again: it has been changed")
-
-
-@pytest.mark.parametrize(("keys", "value"), TAMPERED)
-def test_a_result_stored_that_is_no_record_is_computed_again(tmp_path, keys, value):
-    _, record = one_stored(tmp_path)
-    opened(tmp_path, force=True).put(asdict(CASES[0]), changed(value, keys, to_plain(record)))
-    (file,) = stored_cases(tmp_path).values()
-    computed_again(tmp_path, record, f"{file} is computed again: it")
 
 
 def test_results_of_other_code_or_format_are_computed_again(tmp_path, monkeypatch):

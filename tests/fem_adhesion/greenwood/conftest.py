@@ -5,6 +5,8 @@ import csv
 import pytest
 from whole_runs import GREENWOOD
 
+from fem_adhesion.greenwood import claims
+
 
 @pytest.fixture(scope="session")
 def ran(whole):
@@ -16,6 +18,12 @@ def ran(whole):
 def study(ran):
     """What it computed."""
     return ran.kept[0]
+
+
+@pytest.fixture(scope="session")
+def judged(study):
+    """The claims of the paper, each with its verdict."""
+    return claims.judged(study)
 
 
 @pytest.fixture(scope="session")
