@@ -3,6 +3,7 @@
 What is in the files is read back by the tests of each command, of the same run.
 """
 
+import ast
 import csv
 import itertools
 import json
@@ -49,6 +50,7 @@ LINES = {
     REPORT: REPORT,
     "fem-adhesion speed --out speed --quick": "fem-adhesion speed --out speed --quick",
     "fem-adhesion greenwood --out greenwood": GREENWOOD,
+    "fem-adhesion formulas --out formulas": "fem-adhesion formulas --out formulas",
     f"{ASSESS} --plot silica.png": f"{ASSESS} --plot silica.png",
     "fem-adhesion finite-sphere --out sphere --quick": "fem-adhesion finite-sphere --out sphere --quick",
     "make hard": MAKE,
@@ -142,6 +144,13 @@ def _open_page(file):
     assert "{{" not in text
 
 
+def _open_emitted(file):
+    text = file.read_text()
+    assert text.endswith("\n")
+    assert "Made by fem-adhesion" in text
+    assert not re.search(r"\$\w", text), "a name that nothing stands for"
+
+
 OPENED = {
     ".json": _open_json,
     ".jsonl": lambda file: [json.loads(line) for line in file.read_text().splitlines()],
@@ -149,6 +158,8 @@ OPENED = {
     ".png": _open_picture,
     ".html": _open_page,
     ".parquet": lambda file: parquet.read_table(file).num_rows or pytest.fail("an empty table"),
+    ".py": lambda file: ast.parse(file.read_text()),
+    **dict.fromkeys((".h", ".c", ".f90", ".tex"), _open_emitted),
     ".md": lambda file: file.read_text().strip() or pytest.fail("an empty page"),
     **dict.fromkeys((".svg", ".vtu", ".vtp", ".vtk", ".pvd"), ElementTree.parse),
 }

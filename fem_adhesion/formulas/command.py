@@ -1,0 +1,34 @@
+"""``fem-adhesion formulas``: closed expressions in the languages of other codes."""
+
+from __future__ import annotations
+
+import argparse
+
+from fem_adhesion.common.options import AGREE, Command, Parser, add_output
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the files."""
+    from fem_adhesion.common.files import directory_written_aside, writing
+    from fem_adhesion.formulas import emit
+
+    with directory_written_aside(options.out, force=options.force) as aside, writing(options.out):
+        emit.write(aside)
+    print(f"{', '.join(emit.NAMES)} written: {options.out}")
+    return AGREE
+
+
+def add_options(command: Parser) -> None:
+    """Add the options."""
+    add_output(command)
+
+
+COMMAND = Command(
+    "formulas",
+    "write closed expressions for other codes, in Python, C, Fortran, Markdown and LaTeX",
+    "Pull-off load, radius under no load, approaches of both jumps and the energy lost in a cycle at any Tabor "
+    "parameter, each with its worst error, and the conventions of six codes with functions that convert theirs.",
+    "--out formulas",
+    add_options,
+    run,
+)

@@ -1,0 +1,51 @@
+"""The formulas of `halfspace.theories.fits` in other languages, all from the same coefficients."""
+
+from __future__ import annotations
+
+import re
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+
+from halfspace.theories import fits
+from halfspace.theories.closed_forms import ZERO_LOAD_RADIUS
+
+NAMES = ("adhesion.py", "adhesion.h", "adhesion.c", "adhesion.f90", "formulas.md", "formulas.tex")
+
+
+def write(directory: Path) -> None:
+    """Write all files into a directory."""
+    words = _words()
+    for name in NAMES:
+        template = files("fem_adhesion.formulas").joinpath("data", f"{name}.template").read_text(encoding="utf-8")
+        (directory / name).write_text(Template(template).substitute(words), encoding="utf-8")
+
+
+def worst_errors() -> dict[str, str]:
+    """Largest relative error of each formula as `fits` states it."""
+    return dict(re.findall(r"^    (\w+) +(\S+) of", fits.__doc__ or "", re.M))
+
+
+def _words() -> dict[str, object]:
+    """What stands for each name in the templates."""
+    words: dict[str, object] = {f"worst_{name}": worst for name, worst in worst_errors().items()}
+    words |= {"version": version("fem-adhesion"), "rigid_radius": repr(float(fits.RIGID_RADIUS))}
+    words |= {"jkr_radius": repr(ZERO_LOAD_RADIUS), "jkr_lost": repr(fits.JKR_LOST)}
+    last = ZERO_LOAD_RADIUS / float(fits.RIGID_RADIUS) * fits.CONSTANTS["zero_load_below"][-1]
+    words["last_zero_load"] = repr(last)
+    for name, value in fits.CONSTANTS.items():
+        if isinstance(value, float):
+            words[name] = repr(value)
+            continue
+        variable = "v" if name in ("jump_on", "jump_off", "energy_lost") else "s"
+        words |= {name: repr(tuple(value)), f"c_{name}": ", ".join(map(repr, value)), f"n_{name}": len(value)}
+        words |= {f"tex_{name}": _sum(value, variable, "^"), f"md_{name}": _sum(value, variable, "^")}
+    return words
+
+
+def _sum(coefficients: list[float], variable: str, power: str) -> str:
+    """Polynomial as it is written by hand."""
+    factors = ["", f" {variable}", *(f" {variable}{power}{i}" for i in range(2, len(coefficients)))]
+    terms = (f"{c:+g}{factor}" for c, factor in zip(coefficients, factors, strict=False))
+    return " ".join(terms).removeprefix("+").replace(" +", " + ").replace(" -", " - ")

@@ -1,0 +1,95 @@
+"""Fit the constants of `halfspace.theories.fits` to the atlas: ``python -m fem_adhesion.formulas.fit``, some seconds.
+
+Each fit is linear least squares, repeated: quotients are multiplied out with their last denominator as weight, and
+points weigh more the larger their deviation was (Lawson), which makes the largest one as small as it can be.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from halfspace import atlas
+from halfspace.theories import fits
+from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF, ZERO_LOAD_RADIUS
+from halfspace.values import Array
+
+ROUNDS = 400  # repetitions of a fit
+DIGITS = 6  # significant digits of a coefficient
+TABORS = np.geomspace(0.01, 300, 1500)
+FOLDED = atlas.birth_of_folds().value + np.geomspace(1e-3, 299.3, 1500)
+
+Columns = Callable[[Array], Array]
+
+
+def constants() -> dict[str, Any]:
+    """Content of ``halfspace/theories/fits.json``: constants of the limits as they are, coefficients fitted to them."""
+    found: dict[str, Any] = {name: fits.CONSTANTS[name] for name in ("birth", "softening", "attraction")}
+    s, load = np.sqrt(TABORS), atlas.pull_off(TABORS).load
+    f = (load - JKR_PULL_OFF) / (BRADLEY_PULL_OFF - JKR_PULL_OFF)
+    c = fits.SOFTENING / (JKR_PULL_OFF - BRADLEY_PULL_OFF)
+    A = np.column_stack([*((1 - f) * s**i for i in (1, 2, 3)), *(-f * s**i for i in (4, 5, 6, 7))])
+
+    def below(x: Array) -> Array:
+        return _sum(s, [1, *x[:3]]) + c * s**3 + s**4 * _sum(s, x[3:])
+
+    x = quotient(A, f * c * s**3 - (1 - f), below, load)
+    found |= {"pull_off": [1.0, *x[:3]], "pull_off_below": [*x[3:]]}
+    radius = atlas.zero_load(TABORS).contact_radius
+    g, k = radius * s / fits.RIGID_RADIUS, ZERO_LOAD_RADIUS / fits.RIGID_RADIUS
+    A = np.column_stack([*(s**i for i in (1, 2, 3, 4)), *(-g * s**i for i in (1, 2, 3)), k * s**5 - g * s**4])
+    x = quotient(A, g - 1, lambda x: _sum(s, [1, *x[4:]]), g)
+    found |= {"zero_load": [1.0, *x[:4]], "zero_load_below": [1.0, *x[4:]]}
+    on, off = atlas.jump_on(FOLDED).take_off.approach, atlas.jump_off(FOLDED).take_off.approach
+    jkr_off = -3 / 4 * np.pi ** (2 / 3) * FOLDED
+    for name, limit, power, exact, offset, terms in (
+        ("jump_on", -fits.ATTRACTION * FOLDED ** (3 / 7), 18 / 7, on, 1.0, 3),
+        ("jump_off", jkr_off, 3 / 2, off, 0.0, 6),
+        (
+            "energy_lost",
+            fits.JKR_LOST * FOLDED * fits.past_birth(FOLDED, 4 / 7) ** 4,
+            4 / 7,
+            atlas.energy_lost(FOLDED).energy,
+            0.0,
+            5,
+        ),
+    ):
+        v = fits.past_birth(FOLDED, power)
+        scale = np.abs(exact) + offset
+        A = (limit * (1 - v))[:, None] * np.vander(v, terms, increasing=True)
+        found[name] = list(quotient(A, exact - offset - limit, lambda _: np.ones(1), scale))
+    return {name: _rounded(value) for name, value in found.items()}
+
+
+def quotient(A: Array, b: Array, below: Callable[[Array], Array], scale: Array) -> Array:
+    """Coefficients x for which max |(A x - b)/(below(x) scale)| is least."""
+    lawson, under = np.ones(len(b)), np.ones(len(b))
+    best, least = np.zeros(A.shape[1]), np.inf
+    for _ in range(ROUNDS):
+        w = np.sqrt(lawson) / np.abs(under * scale)
+        sizes = np.linalg.norm(A * w[:, None], axis=0)
+        x = np.linalg.lstsq(A * w[:, None] / sizes, b * w, rcond=None)[0] / sizes
+        under = below(x) * np.ones(len(b))
+        off = np.abs((A @ x - b) / (under * scale))
+        if off.max() < least and (under > 0).all():
+            best, least = x, off.max()
+        lawson *= np.sqrt(off / off.max()) + 1e-9
+        lawson /= lawson.mean()
+    return best
+
+
+def _sum(s: Array, coefficients: Sequence[float] | Array) -> Array:
+    return np.asarray(np.polynomial.polynomial.polyval(s, coefficients))
+
+
+def _rounded(value: Any) -> Any:
+    return [float(f"{c:.{DIGITS}g}") for c in value] if isinstance(value, list) else value
+
+
+if __name__ == "__main__":
+    lines = ",\n".join(f"  {json.dumps(name)}: {json.dumps(value)}" for name, value in constants().items())
+    Path(fits.__file__).with_name("fits.json").write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
