@@ -42,11 +42,7 @@ Solver = Callable[..., EquilibriumPath]
 
 
 def compare(
-    scene: Scene,
-    *,
-    rtol: float = 1e-5,
-    before: Sequence[Row] | None = None,
-    solve: Solver = convergence.trace,
+    scene: Scene, *, rtol: float = 1e-5, before: Sequence[Row] | None = None, solve: Solver = convergence.trace
 ) -> Case:
     """Solve a scene with both solvers and compare on all levels.
 

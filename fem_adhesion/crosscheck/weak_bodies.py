@@ -164,12 +164,7 @@ def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:
     """Body as it is held."""
     material, slides = elastic.material, elastic.held in ("sliding", "sheet")
     body = discretise(
-        mesh,
-        degree,
-        elastic.regions,
-        slides=slides,
-        plate=elastic.endless,
-        on_surface=material.area == "surface",
+        mesh, degree, elastic.regions, slides=slides, plate=elastic.endless, on_surface=material.area == "surface"
     )
     if not elastic.endless:
         return body

@@ -14,10 +14,9 @@ from fem_adhesion.common.page import Columns, Section, Table, bullets, said, tit
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import claims
 from fem_adhesion.greenwood.drawing import Plot, drawn, elements_beside, table
-from fem_adhesion.greenwood.facts import Facts, PullOff
+from fem_adhesion.greenwood.facts import FULL, Facts, PullOff
 from fem_adhesion.greenwood.figures import figures
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt, Ripple
-from fem_adhesion.greenwood.settings import FULL
 from fem_adhesion.greenwood.tables import Printed, is_rounded
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event

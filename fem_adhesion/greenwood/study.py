@@ -15,10 +15,9 @@ from fem_adhesion import convergence
 from fem_adhesion.common.fold_birth import FIRST, critical_stiffness, tabor_of
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.greenwood import tables
-from fem_adhesion.greenwood.criteria import fit
-from fem_adhesion.greenwood.facts import DrawnState, Facts, OtherCore, PullOff
+from fem_adhesion.greenwood.facts import FULL, QUICK, DrawnState, Facts, OtherCore, PullOff, Settings
 from fem_adhesion.greenwood.numerics_1997 import attempts, false_rise, ripple, without_singular_point
-from fem_adhesion.greenwood.settings import FULL, QUICK, Settings
+from fem_adhesion.greenwood.tables import fit
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.conditions import Condition, Located

@@ -59,11 +59,7 @@ def even(R: float, m: int, n: int) -> Lines:
 
 
 def hemisphere(
-    R: float,
-    lines: Array,
-    depths: Array,
-    along: Callable[[Array], Array] = np.asarray,
-    rings: Array = NO_RINGS,
+    R: float, lines: Array, depths: Array, along: Callable[[Array], Array] = np.asarray, rings: Array = NO_RINGS
 ) -> CurvedQuads:
     """Mesh the hemisphere z >= -R of the sphere of radius R in beta that touches z = 0 from below.
 

@@ -28,16 +28,7 @@ from fem_adhesion.bodies.held import Hemisphere
 from fem_adhesion.common.facts import with_peak_memory
 from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.scene import Scene
-from fem_adhesion.speed.methods import (
-    POISSON,
-    QUANTITIES,
-    Family,
-    Method,
-    Step,
-    all_methods,
-    estimates,
-    trace_elements,
-)
+from fem_adhesion.speed.methods import POISSON, QUANTITIES, Family, Method, Step, all_methods, estimates, trace_elements
 from halfspace.errors import GridTooCoarse, InputError, NotConverged, Unsolved, tried
 from halfspace.limits import require_between
 from halfspace.values import Array, Estimate

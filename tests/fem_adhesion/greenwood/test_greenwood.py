@@ -16,12 +16,12 @@ import halfspace
 from fem_adhesion import cli
 from fem_adhesion.common import style
 from fem_adhesion.common.page import symbols
-from fem_adhesion.greenwood import claims, facts, numerics_1997, settings
+from fem_adhesion.greenwood import claims, facts, numerics_1997
 from fem_adhesion.greenwood import page as greenwood_page
 from fem_adhesion.greenwood import study as greenwood
 from fem_adhesion.greenwood import tables as greenwood_tables
-from fem_adhesion.greenwood.criteria import fit
 from fem_adhesion.greenwood.drawing import ELEMENTS, drawn, elements_beside
+from fem_adhesion.greenwood.tables import fit
 from halfspace.errors import NotConverged
 from halfspace.theories import criteria, dmt
 from halfspace.theories.closed_forms import bradley_load
@@ -327,7 +327,7 @@ def test_computed_loads_are_right_within_their_errors(rows, lines_in, stem):
 def test_specified_gaps_are_on_the_curve_of_figure_3(lines_in):
     path = halfspace.trace(2.0, rtol=1e-8)
     _, lines = lines_in("fig_3b")
-    gaps = settings.QUICK.specified[2.0]
+    gaps = facts.QUICK.specified[2.0]
     known = path.at(central_gap=gaps)
     specified = lines["central gap specified", 2.0]
     np.testing.assert_allclose(specified, np.column_stack([known.approach, known.load]), atol=1e-4)
