@@ -185,14 +185,16 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
     event, located = path.events[name], path.stages[-1][name]
     radius, reach = _places(located)
     coarse, fine = (_state(contact(radius, reach), located) for contact in (on_coarse, on_fine))
-    before = _state(fine.contact, path.stages[-2][name])  # of the stage before: how much of ripples a stiff law makes
+    before = _state(
+        fine.at.contact, path.stages[-2][name]
+    )  # of the stage before: how much of ripples a stiff law makes
     approach, load = map(event.estimate, ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
-    balances, forces = (coarse.balance, fine.balance), (coarse.attraction, fine.attraction)
+    balances, forces = (coarse.balance, fine.balance), (coarse.at.load, fine.at.load)
     balanced = Estimate(0.0, approach.error + abs(before.balance - fine.balance))
     yield Compared(f"{name} balance", "eps", balances, balanced, width)
     if name != "zero_load":
-        doubt = Estimate(0.0, abs(before.attraction - fine.attraction))
+        doubt = Estimate(0.0, abs(before.at.load - fine.at.load))
         yield Compared(f"{name} attraction", "R dgamma", forces, load + doubt, force)
     a, b = _beside(name, coarse), _beside(name, fine)
     for quantity, unit in (("central_gap", "eps"), ("contact_radius", "beta")):
@@ -236,43 +238,24 @@ def _stable_side(state: Equilibrium) -> float:
 
 def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
     """Equilibrium at the load of a fold that is reached from undeformed surfaces; None if no fold is there."""
-    near = state.approach - USUAL.near * (1 + abs(state.approach))
-    found = _found(from_afar, state.contact, scene.scales.separated_approach, near)
+    near = state.at.approach - USUAL.near * (1 + abs(state.at.approach))
+    found = _found(from_afar, state.at.contact, scene.scales.separated_approach, near)
     if found is None or abs(found.load - state.load) >= USUAL.away * (1 + abs(state.load)):
         return None
-    return _found(newton, state.contact, found.y, at_load(state.contact, state.load))
+    return _found(newton, state.at.contact, found.y, at_load(state.at.contact, state.load))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StateInWeakForm(Valued):
-    """A state of the finite elements in the weak form: the displacements that its gaps would make.
+    """A state of the finite elements in the weak form, whether or not it is in equilibrium there.
 
-    Attributes
-    ----------
-    contact, gap, approach, load
-        The problem, and h, alpha and W of the finite elements.
-    u : (n,) array
-        The displacements.
-    balance : float
-        By how much the gaps that the displacements leave differ from those in eps, weighted by the tension.
+    `load` is W of the finite elements, `balance` by how much the gaps that their tensions leave differ from theirs in
+    eps, weighted by the tension.
     """
 
-    contact: Contact
-    gap: Array
-    approach: float
+    at: Equilibrium
     load: float
-    u: Array
     balance: float
-
-    @property
-    def y(self) -> Array:
-        """State of the weak form."""
-        return np.append(self.gap, self.approach)
-
-    @property
-    def attraction(self) -> float:
-        """Load in R dgamma of the tensions across the gaps."""
-        return self.contact.load(self.y)
 
 
 def _places(event: Located) -> tuple[float, float]:
@@ -291,9 +274,9 @@ def _state(contact: Contact, event: Located) -> StateInWeakForm:
     """Take over the gaps."""
     approach, load = (float(value) for value in event.point.observables[:2])
     h = 1 + _gaps(event, contact)
-    u, weight = contact.displaced(h), np.abs(contact.law.tension(h))
-    off = contact.body.integral((contact.left_by(u, approach) - h) * weight) / contact.body.integral(weight)
-    return StateInWeakForm(contact, h, approach, load, u, off)
+    weight = np.abs(contact.law.tension(h))
+    off = contact.body.integral((contact.left_by(contact.displaced(h), approach) - h) * weight)
+    return StateInWeakForm(Equilibrium(contact, np.append(h, approach)), load, off / contact.body.integral(weight))
 
 
 def _gaps(event: Located, contact: Contact) -> Array:
@@ -314,8 +297,9 @@ def _turn(name: str, state: Equilibrium | None) -> Equilibrium | None:
 
 def _beside(name: str, state: StateInWeakForm) -> Equilibrium | None:
     """Equilibrium at the approach of pull-off, or at the load of another event: what turns there is stationary."""
-    to = at_approach(state.y) if name == "pull_off" else at_load(state.contact, state.load * (name != "zero_load"))
-    return _found(newton, state.contact, state.y, to)
+    contact, y = state.at.contact, state.at.y
+    to = at_approach(y) if name == "pull_off" else at_load(contact, state.load * (name != "zero_load"))
+    return _found(newton, contact, y, to)
 
 
 def _energy_released(scene: Scene, on: FineAt, path: EquilibriumPath) -> float | None:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_adhesion.finite_sphere.table import DeviationRow, Samples, samples
-from halfspace.errors import InputError
+from halfspace.errors import InputError, Unsolved, tried
 from halfspace.values import Array, Estimate
 
 TOLERANCE = 0.1  # of the sum of the terms' sizes
@@ -91,15 +91,8 @@ class Fit:
     worst: float
 
 
-@dataclass(frozen=True)
-class Finding:
-    """What governs one deviation at a Tabor parameter, None for all together: leading terms, or why there are none."""
-
-    cause: str
-    quantity: str
-    tabor: float | None
-    fit: Fit | None
-    reason: str = ""
+Finding = tuple[str, str, float | None, Fit | Unsolved]
+"""Cause, quantity and Tabor parameter of a deviation, None for all, and its leading terms, or why there are none."""
 
 
 def findings(rows: Sequence[DeviationRow], poisson: float = 0.3) -> Iterator[Finding]:
@@ -109,12 +102,8 @@ def findings(rows: Sequence[DeviationRow], poisson: float = 0.3) -> Iterator[Fin
         data = samples(rows, cause, quantity, poisson=nu)
         parts = {None: data} | {float(mu): data.where(data.tabor == mu) for mu in np.unique(data.tabor)}
         for tabor, part in parts.items():
-            try:
-                found = fit(part, leading_terms(cause, quantity, one_tabor=tabor is not None))
-            except InputError as error:
-                yield Finding(cause, quantity, tabor, None, str(error))
-            else:
-                yield Finding(cause, quantity, tabor, found)
+            terms = leading_terms(cause, quantity, one_tabor=tabor is not None)
+            yield cause, quantity, tabor, tried(fit, part, terms, refusals=True)
 
 
 def compare(rows: Sequence[DeviationRow]) -> Iterator[tuple[str, float, float, Estimate]]:

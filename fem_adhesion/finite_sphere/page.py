@@ -19,7 +19,7 @@ from fem_adhesion.finite_sphere.figures import FIGURES
 from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, compare, findings
 from fem_adhesion.finite_sphere.study import Study
 from fem_adhesion.finite_sphere.table import CAUSES, borders, write_tables
-from halfspace.errors import InputError
+from halfspace.errors import Unsolved, tried
 
 SHOWN = {
     "pull_off_load": "pull-off force",
@@ -58,17 +58,16 @@ def _safe(study: Study) -> Table:
 
 def _fits(study: Study) -> Table:
     def cells(one: Finding) -> tuple[str, ...]:
-        if not (fit := one.fit):
-            return ("", "", "", "")
+        fit = one[3]
+        if isinstance(fit, Unsolved):
+            return ("", "", "", "", fit.reason)
         terms = "; ".join(f"({plus_minus(c)}) {name}" for name, c in fit.coefficients.items())
-        return (terms, f"{fit.holds_to:.2g}", str(fit.points), f"{fit.worst:.1e}")
+        return (terms, f"{fit.holds_to:.2g}", str(fit.points), f"{fit.worst:.1e}", "")
 
     columns: Columns[Finding] = {
-        "quantity": lambda one: SHOWN[one.quantity],
-        "cause": lambda one: one.cause,
-        "mu": lambda one: "all" if one.tabor is None else f"{one.tabor:g}",
-        ("leading terms", "up to beta/R", "points", "largest residual"): cells,
-        "why no fit": lambda one: one.reason,
+        ("quantity", "cause"): lambda one: (SHOWN[one[1]], one[0]),
+        "mu": lambda one: "all" if one[2] is None else f"{one[2]:g}",
+        ("leading terms", "up to beta/R", "points", "largest residual", "why no fit"): cells,
     }
     wanted = [r for r in study.rows if r.quantity in SHOWN and (r.cause == "all" or r.quantity == "pull_off_load")]
     texts = titled("finite_sphere", "fits", deviations=DEVIATIONS, tolerance=100 * TOLERANCE)
@@ -77,13 +76,13 @@ def _fits(study: Study) -> Table:
 
 def _theories(study: Study) -> Table:
     columns = ("theory and term", "expected", "fitted", "error", "at mu", "why not")
-    try:
-        lines = [
-            (theory, f"{expected:.4f}", f"{fitted.value:.4f}", f"{fitted.error:.1e}", f"{tabor:g}", "")
-            for theory, expected, tabor, fitted in compare(study.rows)
-        ]
-    except InputError as error:
-        lines = [("", "", "", "", "", str(error))]
+    found = tried(lambda: list(compare(study.rows)), refusals=True)
+    lines = [
+        (theory, f"{expected:.4f}", f"{fitted.value:.4f}", f"{fitted.error:.1e}", f"{tabor:g}", "")
+        for theory, expected, tabor, fitted in found or ()
+    ]
+    if isinstance(found, Unsolved):
+        lines = [("", "", "", "", "", found.reason)]
     return Table(*titled("finite_sphere", "theories"), columns, lines)
 
 
