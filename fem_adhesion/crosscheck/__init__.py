@@ -22,9 +22,9 @@ How independent the two solvers are:
 * All that is shared is checked by a weak form with its own law, profile, energy and Newton's method, on
   its own mesh. Lengths and profiles are from formulas of its own (`definitions`); of laws but the 3-9 it is told the
   potential alone, of profiles of the user's the height. It imports nothing of the solvers. Each event of the finite
-  elements is put into it: do the gaps balance, does the far side carry the load, are central gap and contact radius
-  those of the equilibrium nearby, does the approach turn along the load at a fold? It comes to jump_on
-  on a way of its own, from undeformed surfaces far apart, and tells the jumps apart by the side on which states are
+  elements is put into it: do the gaps balance, do the tensions across them make the load, are central gap and contact
+  radius those of the equilibrium nearby, does the approach turn along the load at a fold? It comes to jump_on on a way
+  of its own, from undeformed surfaces far apart, and tells the jumps apart by the side on which states are
   stable. The energy is that between two states which it solves for at approaches of its own. Law, load, residual and
   tangent are compared at a state made up as well, so that a solver which does not converge is told what is wrong with
   it. It looks for mistakes, not digits: its budget is a part in a thousand, ten of gaps and radii. Beyond a Tabor
