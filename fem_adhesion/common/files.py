@@ -16,20 +16,17 @@ import hashlib
 import io
 import json
 import os
+import secrets
 import shutil
-import stat
-import tempfile
+import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TextIO
 
 from halfspace.errors import InputError
-
-if TYPE_CHECKING:
-    from _typeshed import ReadableBuffer
 
 REMEDIES: Mapping[int, str] = {
     errno.ENOSPC: "free some space or choose another disk",
@@ -45,7 +42,7 @@ REMEDIES: Mapping[int, str] = {
 
 ELSEWHERE = "choose another place"
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # what is no fault of the name that was given
-STANDARD_OUTPUT = 1  # its descriptor
+STANDARD = Path("-")  # stands for standard output
 
 
 class NotWritten(RuntimeError):
@@ -70,68 +67,85 @@ def writing(path: Path, *, begun: bool = True) -> Iterator[None]:
 
 @contextmanager
 def written_aside(path: Path, *, begun: bool = False) -> Iterator[TextIO]:
-    """Open a file beside `path` that takes its place when the block ends well, and vanishes if it does not.
+    """Open a file that is written when the block ends well, see `all_written_aside`."""
+    with all_written_aside([path], begun=begun) as (file,):
+        yield file
 
-    The file is of text; its attribute ``buffer`` takes bytes. Where `path` is a symbolic link, what it leads to is
-    written, and a file that is replaced leaves its mode. A device, a pipe and what is this process' standard output
-    have no place to take: they are written to when the block ends well. InputError at once, before any work unless that
-    has begun, if `path` cannot be written; NotWritten where what is written to the file does not go to the disk.
+
+@contextmanager
+def all_written_aside(paths: Sequence[Path], *, begun: bool = False) -> Iterator[list[TextIO]]:
+    """Open files in memory that are written when the block ends well: all of them or none.
+
+    The files are of text; their attribute ``buffer`` takes bytes. Each is written beside its path first and then takes
+    its place. Where the path is a symbolic link, what it leads to is written, and a file that is replaced leaves its
+    mode. A device, a pipe and standard output, which is also called ``-``, have no place to take and are written to.
+    InputError at once, before any work unless that has begun, if a path cannot be written; NotWritten at the end.
     """
+    targets = [_target(path, begun=begun) for path in paths]
+    held = [io.BytesIO() for _ in paths]
+    files = [io.TextIOWrapper(contents, encoding="utf-8") for contents in held]
+    yield list(files)
+    asides = [target and _unique(target.parent) for target in targets]
+    try:
+        for path, file, contents, aside in zip(paths, files, held, asides, strict=True):
+            file.flush()
+            if aside:
+                with writing(path):
+                    aside.write_bytes(contents.getbuffer())
+        for path, contents, aside, target in zip(paths, held, asides, targets, strict=True):
+            with writing(path):
+                if aside and target:
+                    _put(aside, target)
+                elif _is_standard_output(path):
+                    sys.stdout.flush()
+                    sys.stdout.buffer.write(contents.getvalue())
+                    sys.stdout.flush()
+                else:
+                    path.write_bytes(contents.getbuffer())
+    finally:
+        for aside in filter(None, asides):
+            with suppress(OSError):  # it has taken its place, or the folder has vanished or become read-only
+                aside.unlink()
+
+
+def _target(path: Path, *, begun: bool) -> Path | None:
+    """File that is replaced, or None of what is written to where it is; InputError if neither can be."""
+    if _is_standard_output(path):
+        return None
     with writing(path, begun=begun):
         if path.is_dir():
             raise InputError(f"{path} is a directory; give the name of a file")
-        target, place = path.resolve(), _in_place(path)
-        if place is None:
-            descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", text=True)
-    if place is not None:
-        held = io.BytesIO()
-        with _opened(place, path) as stream, io.TextIOWrapper(held, encoding="utf-8") as file:
-            yield file
-            file.flush()
-            stream.buffer.write(held.getvalue())
-        return
-    aside = Path(name)
-    try:
-        with _opened(descriptor, path) as file:
-            yield file
-            file.flush()
-        with writing(path):
-            _put(aside, target)
-    finally:
-        with suppress(OSError):  # the folder may have vanished, or have become read-only
-            aside.unlink()
+        if path.exists() and not path.is_file():
+            return None
+        target = path.resolve()
+        _require_folder(path, target.parent)
+    return target
 
 
-def _in_place(path: Path) -> int | None:
-    """Descriptor of what is written to where it is, or None of what a file can take the place of."""
-    if not path.exists():
-        return None
-    with suppress(OSError):  # standard output may be closed
-        if os.path.samestat(path.stat(), os.fstat(STANDARD_OUTPUT)):
-            return os.dup(STANDARD_OUTPUT)
-    return None if path.is_file() else os.open(path, os.O_WRONLY)
+def _is_standard_output(path: Path) -> bool:
+    """Whether a path leads to this process' standard output."""
+    if path == STANDARD:
+        return True
+    with suppress(OSError):  # there is no such file, or standard output is closed
+        return os.path.samestat(path.stat(), os.fstat(1))
+    return False
+
+
+def _require_folder(path: Path, folder: Path) -> None:
+    if not (folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)):
+        raise InputError(f"{path} cannot be written; choose a folder that exists and is yours")
+
+
+def _unique(folder: Path) -> Path:
+    """Name of what is unfinished in a folder."""
+    return folder / f".unfinished.{secrets.token_hex(8)}"
 
 
 def _put(aside: Path, target: Path) -> None:
-    """Let a file take its place, with the mode of the file that was there, or that of a new one."""
-    aside.chmod(stat.S_IMODE(target.stat().st_mode) if target.exists() else 0o666 & ~_umask())
+    """Let a file take its place, with the mode of the file that was there."""
+    if target.is_file():
+        shutil.copymode(target, aside)
     aside.replace(target)
-
-
-class _Output(io.FileIO):
-    """File that says what could not be written, and why."""
-
-    def __init__(self, descriptor: int, path: Path) -> None:
-        super().__init__(descriptor, "w")
-        self.path = path
-
-    def write(self, data: ReadableBuffer, /) -> int:
-        with writing(self.path):
-            return super().write(data)
-
-
-def _opened(descriptor: int, path: Path) -> TextIO:
-    return io.TextIOWrapper(io.BufferedWriter(_Output(descriptor, path)), encoding="utf-8")
 
 
 @contextmanager
@@ -145,22 +159,18 @@ def directory_written_aside(path: Path, *, force: bool = False) -> Iterator[Path
     """
     with writing(path, begun=False):
         present, target = _present(path), path.resolve()
-        aside = Path(tempfile.mkdtemp(dir=target.parent if present is None else target, prefix=".unfinished."))
-    try:
         if present and not force:
             raise InputError(f"{path} holds {present} files, limit 0; empty it, choose another or use --force")
+        aside = _unique(target.parent if present is None else target)
+        aside.mkdir()
+    try:
         yield aside
         with writing(path):
             if present is None:  # in one step
-                aside.chmod(0o777 & ~_umask())
                 aside.replace(target)
             else:
                 for file in aside.iterdir():
-                    place = (target / file.name).resolve()
-                    if place.is_file():
-                        _put(file, place)
-                    else:
-                        file.replace(place)
+                    _put(file, (target / file.name).resolve())
     finally:
         shutil.rmtree(aside, ignore_errors=True)
 
@@ -172,12 +182,6 @@ def _present(directory: Path) -> int | None:
     if directory.exists():
         raise InputError(f"{directory} is a file; give the name of a directory")
     return None
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 # Results of a study
@@ -240,7 +244,7 @@ class Store:
         return None
 
     def put(self, inputs: Plain, result: Plain) -> None:
-        """Write the result of a case: after this call it is on disk; before, there is none, or the one of before."""
+        """Write the result of a case; until that is done there is none, or the one of before."""
         path = self.path(inputs)
         asked, stored = dict(inputs), dict(result)
         checksum = _digest([asked, self.code, stored])
@@ -250,15 +254,6 @@ class Store:
             path.parent.mkdir(parents=True, exist_ok=True)
         with written_aside(path, begun=True) as file:
             file.write(text)
-            file.flush()
-            with writing(path):
-                os.fsync(file.fileno())
-        with writing(path):  # a replaced name lasts through a loss of power, too
-            folder = os.open(path.parent, os.O_RDONLY)
-            try:
-                os.fsync(folder)
-            finally:
-                os.close(folder)
 
     def distrust(self, inputs: Plain, why: str) -> None:
         """Note that the file of a case is not used, and why."""
@@ -279,9 +274,7 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
     """
     with writing(directory, begun=False):
         present = _present(directory)
-    place = directory.parent if present is None else directory
-    if not (place.is_dir() and os.access(place, os.W_OK | os.X_OK)):
-        raise InputError(f"{directory} cannot be written; choose a folder that exists and is yours")
+    _require_folder(directory, directory.parent if present is None else directory)
     if present and not force and not (resume and (directory / FOLDER).is_dir()):
         remedy = "it is no study to resume, choose another" if resume else "choose another or use --resume"
         forced = "" if force is None else " or --force"

@@ -5,8 +5,9 @@
 Results come as they are ready. A worker that dies costs no other item: the items that were lost with it run again when
 nothing else runs, one at a time, so that the item that kills its worker is known for certain.
 
-joblib 1.6 was tried in the place of this module. Where a worker dies it ends the whole stream, and its workers outlive
-a study that was killed. The second attempts, the watch over the study and the words to the user would all remain.
+joblib 1.6 was tried in the place of this module: where a worker dies it ends the whole stream, and its workers outlive
+a study that was killed. The second attempts, the watch over the study and the words to the user would all remain, and
+these are most of the module.
 """
 
 from __future__ import annotations
@@ -46,7 +47,6 @@ class Patience:
 
     attempts: int = 3  # at an item whose worker dies; one more only if the machine itself kills at random
     connection: float = 30.0  # for the answer of a scheduler; one that is not there is known at once
-    quiet: float = 20.0  # without a result before a cluster is asked whether it has workers
     watch: float = 1.0  # between two looks of a local worker at whether its study is alive
     idle: float = 300.0  # after which a local worker without work ends
     grown: float = 1e9  # bytes by which a local worker may grow before it is replaced, which takes a second
@@ -104,19 +104,15 @@ class WorkerDied:
 
 @dataclass(frozen=True)
 class Pool:
-    """Workers. `submit` hands out a call, `width` calls at once; `stop` ends them, at work or idle.
+    """Workers: `submit` hands out a call, `width` calls at once; `stop` ends them, at work or idle.
 
-    A future raises `died` if its worker died; then its item runs alone `alone` times, and `lost` says that all failed.
-    `ask` is called where no result has come for a while.
+    A future raises `died` if its worker died.
     """
 
     submit: Callable[..., Future[Any]]
     stop: Callable[[bool], None]
     width: int
     died: type[Exception]
-    alone: int
-    lost: str
-    ask: Callable[[], None] = lambda: None
 
 
 def stream(
@@ -133,77 +129,51 @@ def stream(
     """
     if dask is not None:
         return _on_pool(work, items, _cluster(dask, len(items)))
-    number = workers(jobs)
-    return ((item, work(item)) for item in items) if number == 1 else _on_pool(work, items, _processes(number))
-
-
-def workers(jobs: int | None) -> int:
-    """Number of local processes, or InputError unless it is positive."""
     if jobs is not None and jobs < 1:
         raise InputError(f"jobs = {jobs} is outside 1 <= jobs; leave it out to use all cores")
-    if jobs is None:
-        from loky import cpu_count  # here, as every command shows progress and few need processes
-
-        return int(cpu_count())
-    return jobs
+    if jobs == 1:
+        return ((item, work(item)) for item in items)
+    return _on_pool(work, items, _processes(jobs))
 
 
 def _on_pool(
     work: Callable[[Item], Result], items: Sequence[Item], pool: Pool
 ) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
-    waiting, lost = iter(items), []
-    given: dict[Future[Result], Item] = {}
+    """Results as they come. An item whose worker died runs again when nothing else does, some times at most."""
+    waiting, lost = iter(items), list[tuple[Item, int]]()
+    given: dict[Future[Result], tuple[Item, int]] = {}  # items with the number of the attempt
     try:
         while True:
-            given |= {pool.submit(work, item): item for item in islice(waiting, pool.width - len(given))}
+            given |= {pool.submit(work, item): (item, 1) for item in islice(waiting, pool.width - len(given))}
+            if not given and lost:
+                alone = lost.pop()
+                given[pool.submit(work, alone[0])] = alone
             if not given:
-                break
-            for future in _ended(given, pool):
-                item = given.pop(future)
-                if isinstance(future.exception(), pool.died):
-                    lost.append(item)
-                else:
+                return
+            for future in wait(given, return_when=FIRST_COMPLETED).done:
+                item, attempt = given.pop(future)
+                if not isinstance(error := future.exception(), pool.died):
                     yield item, future.result()
-        for item in lost:
-            yield item, _alone(work, item, pool)
+                elif attempt < PATIENCE.attempts:
+                    lost.append((item, attempt + 1))
+                else:
+                    yield item, WorkerDied(f"its worker died {attempt} times: {str(error).strip().splitlines()[0]}")
     finally:
         pool.stop(bool(given))
 
 
-def _ended(given: dict[Future[Result], Item], pool: Pool) -> set[Future[Result]]:
-    """Futures that have ended, one at least."""
-    while not (done := wait(given, PATIENCE.quiet, FIRST_COMPLETED).done):
-        pool.ask()
-    return done
-
-
-def _alone(work: Callable[[Item], Result], item: Item, pool: Pool) -> Result | WorkerDied:
-    """Result of an item while no other runs, tried again if the worker dies."""
-    for _ in range(pool.alone):
-        future: Future[Result] = pool.submit(work, item)
-        _ended({future: item}, pool)
-        error = future.exception()
-        if not isinstance(error, pool.died):
-            return future.result()
-    return WorkerDied(f"{pool.lost}: {str(error).strip().partition(chr(10))[0]}")
-
-
-def _processes(number: int) -> Pool:
-    """Local processes, started anew when one has died."""
-    from loky import get_reusable_executor
+def _processes(number: int | None) -> Pool:
+    """Local processes, as many as cores unless their number is given, started anew when one has died."""
+    from loky import cpu_count, get_reusable_executor  # here, as every command shows progress and few need processes
     from loky.backend.process import LokyProcess
     from loky.process_executor import TerminatedWorkerError
 
     # loky warns where it replaces a worker that has grown, which is no trouble of the user's.
     replaced = "A worker (stopped|was restarted) while some jobs were given"
     warnings.filterwarnings("ignore", message=replaced, category=UserWarning)
-    settings = {
-        "timeout": PATIENCE.idle,
-        "initializer": _watch,
-        "initargs": (os.getpid(),),
-        "env": {**ONE_THREAD, "LOKY_MAX_MEMORY_LEAK_SIZE": str(PATIENCE.grown)},
-    }
-
+    number = number or int(cpu_count())
+    grown = {"LOKY_MAX_MEMORY_LEAK_SIZE": str(PATIENCE.grown)}
+    settings = {"timeout": PATIENCE.idle, "initializer": _watch, "initargs": (os.getpid(),), "env": ONE_THREAD | grown}
     executor: Callable[[], Any] = partial(get_reusable_executor, number, **settings)
 
     def submit(*call: Any) -> Future[Any]:
@@ -221,8 +191,7 @@ def _processes(number: int) -> Pool:
                 worker.terminate()
         executor().shutdown()
 
-    tries = PATIENCE.attempts
-    return Pool(submit, stop, 2 * number, TerminatedWorkerError, tries - 1, f"its worker died {tries} times")
+    return Pool(submit, stop, 2 * number, TerminatedWorkerError)
 
 
 def _watch(study: int) -> None:
@@ -248,58 +217,35 @@ def _cluster(address: str, width: int) -> Pool:
         raise InputError(f"dask = {address} needs the extra cluster; pip install 'fem-adhesion[cluster]'") from error
     found, seconds = address if "://" in address else f"tcp://{address}", PATIENCE.connection
     try:
-        _knock(found)
+        place = urlsplit(found)
+        # A client that fails to connect writes to the terminal.
+        socket.create_connection((place.hostname or "", place.port or 0), timeout=seconds).close()
         client = distributed.Client(found, timeout=seconds, set_as_default=False)
     except (OSError, ValueError) as error:
         raise InputError(
             f"dask = {address} does not answer within {seconds:g} s; give the scheduler's, as tcp://host:8786"
         ) from error
-    missing = False
-
-    def ask() -> None:
-        nonlocal missing
-        try:
-            _knock(found)
-        except OSError:
-            raise InputError(f"dask = {address} has stopped answering; start it and run the command again") from None
-        was_missing, missing = missing, not client.nthreads()
-        if missing and not was_missing:
-            idle = f"dask = {address} has no workers and is waited for; start one with dask worker {found}"
-            sys.stderr.write(f"fem-adhesion: {idle}\n")
-
-    ask()
+    if not client.nthreads():
+        idle = f"dask = {address} has no workers and is waited for; start one with dask worker {found}"
+        sys.stderr.write(f"fem-adhesion: {idle}\n")
 
     def submit(*call: Any) -> Future[Any]:
         future: Future[Any] = Future()
-        client.submit(*call, pure=False).add_done_callback(partial(_hand_on, future))
+
+        def hand_on(done: Any) -> None:
+            """Give the result or the error: the client's own executor fails if a worker dies before it is asked."""
+            try:
+                future.set_result(done.result())
+            except CancelledError:
+                future.set_exception(InputError("dask: the scheduler has gone; start it and run the command again"))
+            except BaseException as error:
+                future.set_exception(error)
+
+        client.submit(*call, pure=False).add_done_callback(hand_on)
         return future
 
-    def stop(at_work: bool) -> None:  # noqa: ARG001 (the client goes in any case)
-        client.close()
-
     # The scheduler gives up an item that was on too many dying workers, even if it only waited there: that runs alone.
-    return Pool(submit, stop, width, distributed.KilledWorker, 1, "its worker died", ask)
-
-
-def _hand_on(future: Future[Any], done: Any) -> None:
-    """Give a future the result of one of the cluster's, or its error.
-
-    The client's own executor asks for the status after the result, and fails if the worker has died in between.
-    """
-    try:
-        future.set_result(done.result())
-    except CancelledError:
-        future.set_exception(InputError("dask: the scheduler has gone; start it and run the command again"))
-    except BaseException as error:
-        future.set_exception(error)
-
-
-def _knock(address: str) -> None:
-    """Raise OSError or InputError unless somebody listens: a client that fails to connect writes to the terminal."""
-    parts = urlsplit(address)
-    if not parts.hostname or not parts.port:
-        raise InputError("no host or no port")
-    socket.create_connection((parts.hostname, parts.port), timeout=PATIENCE.connection).close()
+    return Pool(submit, lambda _: client.close(), width, distributed.KilledWorker)
 
 
 # The cases of a study

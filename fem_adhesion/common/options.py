@@ -7,13 +7,13 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
+from fem_adhesion.common.files import STANDARD, all_written_aside
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,29 +23,8 @@ AGREE, DISAGREE, BAD_INPUT, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 NOT_WRITTEN = DISAGREE
 
 
-STANDARD = Path("-")  # stands for standard output
 COMMAND: ContextVar[str] = ContextVar("command", default="")
 """Command line that is being run, for the records of its files."""
-
-
-GONE = {
-    "--law-parameter": "--law morse:3",
-    "--profile-parameter": "--profile power:4",
-    "--radius-ratio": "--body hemisphere:100 or --profile sphere:100",
-    "--grip": "--body hemisphere:100,bonded",
-    "--counter-share": "--counter hemisphere:200 --share 0.4",
-    "--mesh": "--body meshed:tip.msh,100",
-    "--cap-angle": "--body held-sphere:100,20",
-    "--block-radius": "--body block:20",
-    "--far-field": "--body block:20,clamped",
-    "--thickness": "--body layer:2",
-    "--foundation": "--body layer:2,sliding",
-    "--modulus-ratio": "--body coated:2,10",
-    "--substrate-poisson": "--body coated:2,10,0.4",
-    "--strata": "--body layers:0.4,0.3/0.5,0.45,2",
-    "--substrate": "--body layers:0.4,0.3/substrate:5,0.1",
-}
-"""Options of earlier versions, and what says the same now."""
 
 
 class Help(argparse.HelpFormatter):
@@ -102,11 +81,7 @@ class Parser(argparse.ArgumentParser):
         return f"fem-adhesion {version('fem-adhesion')}"
 
     def error(self, message: str) -> NoReturn:
-        """Exit with code 2; an option of earlier versions is answered by the one in its place."""
-        gone = [word for word in message.split() if word.partition("=")[0] in GONE]
-        if message.startswith("unrecognized") and gone:
-            old = gone[0].partition("=")[0]
-            message = f"{old} is no longer an option, write {GONE[old]}"
+        """Exit with code 2."""
         self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 
@@ -164,40 +139,19 @@ def require_distinct(*paths: Path | None) -> None:
 
 
 @contextmanager
-def written(path: Path | None) -> Iterator[TextIO | None]:
-    """Open the file of an output, whole or not at all; standard output for ``-``, nothing for None."""
-    from fem_adhesion.common.files import writing, written_aside
-
-    if path is None:
-        yield None
-    elif path == STANDARD:
-        text = StringIO()
-        yield text
-        with writing(Path("standard output")):
-            sys.stdout.write(text.getvalue())
-            sys.stdout.flush()
-    else:
-        with written_aside(path) as file:
-            yield file
-
-
-@contextmanager
 def all_written(**paths: Path | None) -> Iterator[dict[str, TextIO]]:
     """Open the files of all outputs that are given, by name: all appear or none. A table gets a file for its record.
 
     The record's file is named ``metadata``; what is written to standard output has none.
     """
     require_distinct(*paths.values())
-    table = paths.get("csv")
-    if table and table != STANDARD:
+    given = {name: path for name, path in paths.items() if path}
+    if (table := given.get("csv")) and table != STANDARD:
         from fem_adhesion.common.record import beside
 
-        paths = {"metadata": beside(table), **paths}
-    with ExitStack() as stack:
-        opened = {name: stack.enter_context(written(path)) for name, path in paths.items()}
-        yield {name: file for name, file in opened.items() if file}
-        for file in filter(None, opened.values()):
-            file.flush()  # all are on disk before the first takes its place
+        given["metadata"] = beside(table)
+    with all_written_aside(list(given.values())) as files:
+        yield dict(zip(given, files, strict=True))
 
 
 def console_beside(*paths: Path | None) -> Console:

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_workers, console_beside, written
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_workers, all_written, console_beside
 from fem_adhesion.common.scene_options import POISSON, add_body, scene_of
 
 
@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
     for scene in scenes:
         require_comparable(scene, options.rtol)
     console, cases = console_beside(options.json), []
-    with written(options.json) as file:
+    with all_written(json=options.json) as files:
         solved = comparisons.run(scenes, rtol=options.rtol, jobs=options.jobs, dask=options.dask)
         for done, scene in enumerate(scenes):
             with progress_bar() as step:  # it is gone when a table is printed, which would break it
@@ -52,8 +52,8 @@ def run(options: argparse.Namespace) -> int:
                 console.print(*crosscheck_tables(case))
             console.print()
         record = run_record(rtol=options.rtol) | crosscheck_record(cases)
-        if file:
-            json.dump(record, file, indent=1, allow_nan=False)
+        if "json" in files:
+            json.dump(record, files["json"], indent=1, allow_nan=False)
     console.print(f"verdict: {record['verdict']}", highlight=False)
     return AGREE if record["verdict"] == "agree" else DISAGREE
 

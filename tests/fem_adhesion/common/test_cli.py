@@ -14,8 +14,6 @@ from whole_runs import COMPARE
 from fem_adhesion import cli
 from fem_adhesion.common.files import directory_written_aside, written_aside
 from fem_adhesion.common.jobs import ONE_THREAD
-from fem_adhesion.common.options import GONE
-from fem_adhesion.common.words import part_in
 from fem_adhesion.crosscheck import scenes as beside
 from halfspace.errors import NotConverged
 from halfspace.laws import Morse
@@ -95,19 +93,6 @@ def test_an_output_that_cannot_be_is_refused_before_any_work(command, tmp_path, 
         assert message in err
         assert err.count("\n") == 1
     assert [file.name for file in tmp_path.iterdir()] == ["precious"]
-
-
-@pytest.mark.parametrize(("old", "new"), GONE.items())
-def test_an_option_that_is_gone_names_what_says_the_same(old, new, capsys):
-    """And what it names is understood."""
-    command = "curve" if old not in ("--grip", "--thickness") else "compare"
-    assert ended([command, "--tabor", "1", old, "2"]) == 2
-    assert capsys.readouterr().err.startswith(f"fem-adhesion: {old} is no longer an option, write {new}; see")
-    for line in new.split(" or "):
-        cli.make_parser().parse_args(["curve", *line.split()])
-        kind, word = line.split()[:2]
-        if "msh" not in word:
-            part_in("body" if kind == "--counter" else kind.removeprefix("--"), word)
 
 
 def test_no_command_is_refused():

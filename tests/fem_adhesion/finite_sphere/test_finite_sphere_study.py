@@ -310,7 +310,7 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match="not JSON compliant"):
         study.put({"a": 1}, {"b": math.nan})
     assert study.get({"a": 1}) == {"b": 2}
-    monkeypatch.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError("disk full")))
+    monkeypatch.setattr(Path, "write_bytes", lambda *_: (_ for _ in ()).throw(OSError("disk full")))
     with pytest.raises(NotWritten, match=r"cannot be written \(disk full\); choose another place"):
         study.put({"a": 1}, {"b": 3})
     assert study.get({"a": 1}) == {"b": 2}
