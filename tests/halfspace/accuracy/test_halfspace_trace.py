@@ -3,28 +3,25 @@
 import csv
 import subprocess
 import sys
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from references import charted_rung
-from scipy.optimize import brentq
 
 import halfspace
 from fem_adhesion.common.fold_birth import critical_stiffness
 from halfspace.accuracy.finite_bodies import ChartSettings
 from halfspace.accuracy.grids import half_space_charts, resolution_for
-from halfspace.accuracy.refinement import MOST_RUNGS, climb
+from halfspace.accuracy.refinement import climb
 from halfspace.elastic.kernel import RingRules
-from halfspace.equilibrium.charts import metric_for, trace_charts
-from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, brackets, part_way
+from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.path import Steps
 from halfspace.equilibrium.search import find_events
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Dugdale
 from halfspace.profiles import Sphere
 from halfspace.scales import Scales
@@ -96,14 +93,6 @@ def test_the_unstable_branch_lies_between_the_jumps(curves):
     assert path.load.min() >= pull_off
     falling = np.diff(path.load) < 0
     assert not (path.stable_under_dead_load[1:] & path.stable_under_dead_load[:-1])[falling].any()
-
-
-def test_states_that_meet_a_condition_come_in_order(curves):
-    path = curves[2.0]
-    on, off = path.states(FOLD)
-    assert on.point.arclength < off.point.arclength
-    for fold, name in ((on, "jump_on"), (off, "jump_off")):
-        assert fold.point.observables[0] == pytest.approx(path.event(name).approach, abs=1e-3)
 
 
 def test_the_curve_runs_from_separation_to_compression(curves):
@@ -189,35 +178,6 @@ def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, po
     assert len(made) <= factorisations
 
 
-def test_factors_that_serve_twice_leave_points_exact():
-    """Against factors made anew at each point."""
-    for segment in trace_charts(half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-6))):
-        problem = segment.problem
-        for point in segment.points:
-            assert problem.misfit(point.x, problem.residual(point.x)) < 1e-10
-            row = problem.gradient(point.x, np.array([1.0, 1.0, -1.0, 0.0]))
-            exact = problem.bordered_solver(point.x, row)(np.eye(1, row.size, row.size - 1)[0])
-            exact *= point.tangent[0] / exact[0]
-            np.testing.assert_allclose(point.tangent[:-2], exact[:-2], rtol=1e-7, atol=1e-9)
-
-
-@pytest.mark.parametrize("condition", [FOLD, EXTREMUM], ids=["fold", "extremum"])
-def test_newton_finds_the_turning_points_of_halving(condition):
-    """At tabor 50 the curve winds, in folds of 0.01 eps at loads that change by 1e-4."""
-    segments = trace_charts(half_space_charts(Scales(50.0), resolution_for(Scales(50.0), 1e-6)))
-    metric = metric_for(segments[0].problem)
-    found = 0
-    for segment in segments:
-        for a, b in brackets(segment.problem, segment.points, metric, condition):
-            fast = between(segment.problem, a, b, condition, metric)
-            along = partial(part_way, segment.problem, a, b, metric=metric)
-            sure = along(brentq(lambda part, along=along: condition.of(along(part)), 1e-9, 1 - 1e-9, xtol=1e-14))
-            np.testing.assert_allclose(fast.point.observables[:3], sure.observables[:3], rtol=1e-9, atol=1e-9)
-            assert abs(condition.of(fast.point)) < 1e-10
-            found += 1
-    assert found >= 6
-
-
 def test_what_the_lowest_grid_cannot_carry_goes_to_the_next():
     """As where two folds about to merge exist on one grid, but not on another."""
     asked = []
@@ -233,24 +193,14 @@ def test_what_the_lowest_grid_cannot_carry_goes_to_the_next():
     assert path.event("jump_on").approach == pytest.approx(-1.629216712, abs=1e-4)
 
 
-def test_a_curve_that_no_grid_can_carry_says_why():
-    def rung(level):
-        raise NotConverged(f"no level {level}; refine the grid")
-
-    with pytest.raises(NotConverged, match=f"no level {MOST_RUNGS - 1}; refine the grid"):
-        climb(1e-2, rung)
-    with pytest.raises(InputError, match="most_rungs = 0 leaves nothing to climb; allow 1 or more"):
-        climb(1e-2, rung, most_rungs=0)
-
-
 # --- near the Tabor parameter at which the curve begins to fold ---
 
 CRITICAL = 0.69721461383  # `fem_adhesion.common.fold_birth` at rtol 1e-10
 BY_TABOR = 0.459  # R dgamma/eps by which the margin falls with the Tabor parameter there
 
 
-@pytest.mark.parametrize("rtol", [1e-1, 1e-4, 1e-8])
-@pytest.mark.parametrize("tabor", [0.6970, 0.6972, 0.6972146, 0.69721461, 0.697214614, 0.69721462, 0.6974])
+@pytest.mark.parametrize("rtol", [1e-1, 1e-8])
+@pytest.mark.parametrize("tabor", [0.6970, 0.6972146, 0.697214614, 0.69721462, 0.6974])
 def test_a_curve_about_to_fold_says_how_far_its_folds_are(tabor, rtol):
     path = halfspace.trace(tabor, rtol=rtol)
     margin, truth = path.margin, BY_TABOR * (CRITICAL - tabor)
@@ -291,23 +241,6 @@ def test_a_grid_beyond_memory_is_refused_by_its_input(monkeypatch):
     monkeypatch.setattr(halfspace.elastic.kernel, "RULES", RingRules(largest=2e4))
     with pytest.raises(NotConverged, match=r"^rtol = 1e-06 takes grids of \d+ nodes, .*, limit: 2e-05 GB; take a lar"):
         halfspace.trace(2.0, rtol=1e-6)
-
-
-def test_kernels_that_the_store_has_no_room_for_are_refused(monkeypatch):
-    """Each state would take all of them anew."""
-    monkeypatch.setattr(halfspace.accuracy.finite_bodies, "ROOM", 5e4)
-    with pytest.raises(NotConverged, match=r"^rtol = 0.001 takes .* at \d+ contact radii, .* GB; take a larger rtol"):
-        halfspace.trace(1.0, profile=Sphere(100.0), rtol=1e-3)
-
-
-def test_events_are_found_on_a_sphere_whose_edge_is_sharp():
-    """Over a grid that stands still Newton's method does not take it far: one that follows it comes between."""
-    path, truth = (halfspace.trace(100.0, profile=Sphere(1e4), rtol=rtol) for rtol in (1e-3, 1e-5))
-    assert path.met
-    for name, event in path.events.items():
-        for quantity in ("approach", "load"):
-            ours, exact = event.estimate(quantity), truth.event(name).estimate(quantity)
-            assert abs(ours.value - exact.value) <= ours.error + exact.error, (name, quantity)
 
 
 def test_the_last_rung_that_fits_memory_has_its_errors(monkeypatch):

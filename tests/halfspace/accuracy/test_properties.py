@@ -152,13 +152,6 @@ def test_a_scene_is_refused_for_what_is_wrong_with_it(name, data):
     require_refused(lambda: Scene(asked.pop("tabor"), Block(**asked)), name, asked[name])
 
 
-@pytest.mark.parametrize("far_field", ["clamped", "free"])
-def test_a_held_block_is_refused_above_tabor_3(far_field):
-    tabor = math.nextafter(3, 4)
-    with pytest.raises(InputError, match="is outside tabor <= 3 for a fixed mesh"):
-        Scene(tabor, Block(radius=50.0, far_field=far_field))
-
-
 @over_inputs(12)
 @given(tabor=tabors, poisson=poissons, rtol=st.floats(-2, -1).map(lambda x: 10.0**x), to_load=st.floats(0.1, 20))
 @example(tabor=1.0, poisson=0.499999, rtol=1e-2, to_load=5.0)

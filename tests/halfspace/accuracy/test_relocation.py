@@ -8,10 +8,8 @@ import pytest
 import fem_adhesion
 from fem_adhesion import Block, Scene
 from halfspace.equilibrium import conditions, events
-from halfspace.equilibrium.charts import settled
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import APPROACH
-from halfspace.equilibrium.path import grows_from_afar
 from halfspace.scales import Scales
 
 
@@ -24,52 +22,6 @@ def test_events_are_found_on_a_block_three_times_as_large(rtol):
             assert abs(event.condition.of(event.point)) < 1e-9, name
     small, large = (path.stages[k]["pull_off"].point.observables[1] for k in (0, -1))
     assert small / large < 0.9
-
-
-class Windows:
-    """A stage whose charts, told by numbers, each have a window; events lie where they were solved for last."""
-
-    def __init__(self):
-        self.charts = [SimpleNamespace(problem=SimpleNamespace(number=k)) for k in range(9)]
-
-    def __call__(self, event):
-        """Chart for where an event lies."""
-        return self.charts[event.lies_in]
-
-
-def solved_on(route):
-    """Where an event lies by each chart in turn, and on which charts it was solved for."""
-    asked = []
-
-    def solve(_, problem):
-        asked.append(problem.number)
-        return SimpleNamespace(problem=problem, lies_in=route[len(asked) - 1])
-
-    return asked, solve
-
-
-@pytest.mark.parametrize(
-    ("route", "order"),
-    [
-        ([0], [0]),
-        ([1, 1], [0, 1]),
-        ([1, 0], [0, 1]),  # between two windows: either serves
-        ([1, 2, 3, 4, 4], [0, 1, 2, 3, 4]),
-    ],
-    ids=str,
-)
-def test_an_event_is_settled_on_a_chart_made_for_it(route, order):
-    asked, solve = solved_on(route)
-    found = settled(SimpleNamespace(problem=None, lies_in=0), Windows(), solve)
-    assert asked == order
-    assert found.problem.number == order[-1]
-
-
-def test_an_event_that_always_lies_elsewhere_is_not_found():
-    _, solve = solved_on([1, 2, 3, 4, 5, 6, 7])
-    lost = settled(SimpleNamespace(problem=None, lies_in=0), Windows(), solve)
-    assert not lost
-    assert "lies elsewhere on every grid" in lost.reason
 
 
 def point(arclength, approach):
@@ -168,11 +120,3 @@ def _chain(condition, rates, values, near_axis=((0.0,), (0.0,))):
     problem = SimpleNamespace(interface=interface, surface_state=lambda x: x)
     points = [SimpleNamespace(observables=v, rates=rates, x=number) for number, v in enumerate(values)]
     return [SimpleNamespace(condition=condition, problem=problem, point=point) for point in points]
-
-
-@pytest.mark.parametrize(("part", "passed"), [(1.0, True), (0.85, True), (0.7, False), (1.2, True), (1.4, False)])
-def test_a_load_grows_from_afar_as_an_exponential(part, passed):
-    """Neither less, where it may dip, nor more, where it may have come back from higher up."""
-    first, last = 1e-4, 8e-4
-    mean = part * (last - first) / float(np.log(last / first))
-    assert grows_from_afar(first, last, mean) is passed

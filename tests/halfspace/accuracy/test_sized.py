@@ -10,21 +10,15 @@ import truths
 from families import of_path
 from scenes import pair
 
-import fem_adhesion
 import halfspace
 from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic, Meshed, NeoHookean, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
-from halfspace.accuracy.grids import resolution_for, under_sphere
-from halfspace.accuracy.stages import on_all
-from halfspace.accuracy.standing import left_between, standing
+from halfspace.accuracy.standing import standing
 from halfspace.equilibrium.charts import moved
-from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 from halfspace.profiles import PARABOLOID, Paraboloid, Sphere
-from halfspace.profiles.formulas import between_spheres
-from halfspace.scales import Scales
 
 HEMISPHERE = Scene(1.0, Hemisphere(radius_ratio=30.0))
 
@@ -90,25 +84,6 @@ def test_a_scene_that_cannot_be_is_refused_with_value_limit_and_remedy(make, mes
     assert ";" in text  # after it, the remedy or the reason
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        HEMISPHERE,
-        replace(HEMISPHERE, profile=Paraboloid()),
-        Scene(1.0, Hemisphere(radius_ratio=30.0, grip="bonded", material=LinearElastic(traction="surface"))),
-        Scene(1.0, HeldSphere(radius_ratio=30.0, cap_angle=90.0)),
-        Scene(1.0, profile=Sphere(30.0)),
-        Scene(1.0, Meshed("any.msh", radius_ratio=30.0)),
-        pair(1.0, 30.0, 0.5),
-        Scene(1.0, Hemisphere(radius_ratio=30.0, material=NeoHookean())),
-        Scene(10.0, Hemisphere(radius_ratio=22.5)),
-    ],
-)
-def test_a_scene_that_can_be_is_not_refused(scene):
-    assert scene.sized
-    assert scene.sphere_radius == pytest.approx(np.sqrt(scene.radius_ratio / scene.tabor))
-
-
 def test_a_body_says_how_long_its_scene_is():
     """The R/eps of a pair is that of both, and its bodies have their own in the units of the pair."""
     scene = pair(1.0, 30.0, 0.4, 0.45, 3.0)
@@ -132,7 +107,7 @@ def test_a_poissons_ratio_is_short_for_a_material():
     assert replace(Hemisphere(radius_ratio=30.0, poisson=0.45), grip="bonded").material.poisson == 0.45
 
 
-@pytest.mark.parametrize("tabor", [1.0, 3.0])
+@pytest.mark.parametrize("tabor", [3.0])
 def test_a_surface_ends_where_its_body_does(tabor):
     """The paraboloid over a hemisphere is one up to the equator."""
     scene = Scene(tabor, Hemisphere(radius_ratio=30.0), Paraboloid())
@@ -140,18 +115,6 @@ def test_a_surface_ends_where_its_body_does(tabor):
     radii = np.linspace(0, 1, 5)
     np.testing.assert_array_equal(scene.surface.height(radii), radii**2 / 2)
     np.testing.assert_array_equal(scene.surface.slope(radii), radii)
-
-
-@pytest.mark.parametrize("rtol", [0.0, 1.0, float("nan")])
-def test_a_tolerance_out_of_range_is_refused_before_any_work(rtol):
-    with pytest.raises(ValueError, match="rtol"):
-        fem_adhesion.trace(HEMISPHERE, rtol=rtol)
-
-
-@pytest.mark.parametrize("radius_ratio", [1.0, 2.0, float("nan")])
-def test_the_half_space_refuses_a_sphere_too_small(radius_ratio):
-    with pytest.raises(ValueError, match="radius_ratio"):
-        halfspace.trace(1.0, profile=Sphere(radius_ratio))
 
 
 @pytest.fixture(scope="module")
@@ -197,48 +160,7 @@ def test_the_vertical_tangent_at_the_equator_leaves_no_more_than_the_estimates(s
         assert abs(number.value - best[what]) <= number.error + abs(rough[what] - best[what]), what
 
 
-def test_a_degree_more_leaves_a_tenth_where_the_attraction_of_a_block_ends_with_the_sphere(small):
-    """A quarter, where cells that are long beside the equator carry the root in its profile."""
-    (_, states), scene = small, Scene(1.0, profile=Sphere(6.0))
-    event = states[-1]["jump_on"]
-    stages = [truths.standing(sized_body(scene, Discretisation(degree))) for degree in (4, 5)]
-    found = [moved(event, stage(event).problem).point.observables for stage in stages]
-    fourth, fifth = (np.abs(observables - event.point.observables)[:3] for observables in found)
-    assert np.all(fifth < fourth / 10)
-
-
-def test_points_of_a_curve_have_no_more_operators_than_rounding_lets_tell_apart():
-    """On a high rung there were two thousand, whose polynomial overflowed: at `rtol=1e-9` a curve had no points."""
-    body = under_sphere(Scales(1.0, profile=between_spheres(np.sqrt(30.0), np.inf)), resolution_for(SCALES, 1e-3))
-    operator = body.curve(left_between(16))[1].problem.operator
-    assert (
-        sum(part.lengths.size for part in operator.kernel.parts) < 150
-    )  # those of parts that no state meets are not made
-    a = float(np.sqrt(operator.kernel.parts[0].lengths[[3, 4]].prod()))
-    exact = body.together(operator.grid.lines(a)[None])[0][0]
-    assert operator.at(a).compliance == pytest.approx(exact.compliance, rel=0, abs=1e-11 * np.max(exact.compliance))
-
-
-SCALES = Scales(1.0)
-
-
-@pytest.mark.parametrize("window", [0.29, 0.7])
-def test_an_operator_across_events_errs_as_the_number_it_was_made_for_says(window):
-    """Against one made where it errs most, at the end of its window, on the same grid."""
-    body = sized_body(Scene(3.0, Hemisphere(radius_ratio=300.0)), Discretisation(4))
-    errors = {}
-    for rtol in (1e-3, 1e-5):
-        span = 1.2 * np.exp(-window), 1.2 * np.exp(window)
-        operator = body.over(span, [body.operators_between(*span, rtol)], span[1]).problem.operator
-        a = 1.2 * np.exp(0.95 * window)
-        exact = body.make(operator.grid.lines(a))[0]
-        pressure = np.exp(-(exact.radii**2))
-        errors[rtol] = np.abs((operator.at(a).compliance - exact.compliance) @ pressure).max()
-    assert errors[1e-5] < errors[1e-3] / 5
-    assert errors[1e-5] < 1e-6
-
-
-@pytest.mark.parametrize(("tabor", "ratio"), [(1.0, 300.0), (1.0, 60.0), (3.0, 30.0), (0.3, 100.0)])
+@pytest.mark.parametrize(("tabor", "ratio"), [(1.0, 60.0)])
 def test_meshes_for_one_chart_have_the_same_cells(tabor, ratio):
     """By a layer of cells more or less the operators would differ by 1e-7, and so would what lies between them."""
     body = sized_body(Scene(tabor, Hemisphere(radius_ratio=ratio)), Discretisation(6))
@@ -247,16 +169,6 @@ def test_meshes_for_one_chart_have_the_same_cells(tabor, ratio):
     exact = body.make(operator.grid.lines(1.3))[0]
     pressure = np.exp(-(exact.radii**2))
     assert np.abs((operator.at(1.3).compliance - exact.compliance) @ pressure).max() < 1e-9
-
-
-def test_an_event_that_moves_away_from_its_grid_is_solved_for_on_one_of_its_own():
-    path = halfspace.trace(1.0, profile=Sphere(100.0), rtol=1e-2)
-    coarse, scales = path.stages[0]["pull_off"], path.segments[0].problem.scales
-    stage = standing(under_sphere(scales, resolution_for(scales, 1e-4)))
-    (found,) = on_all({"pull_off": coarse}, stage).values()
-    radius = float(found.point.observables[CONTACT_RADIUS])
-    lines = found.problem.operator.cells
-    assert np.abs(lines - radius).min() < 0.1 * stage.body.length
 
 
 @pytest.fixture(scope="module")
@@ -301,13 +213,3 @@ def from_paraboloid(spheres, rho, name):
     """Approach and load of an event less those of the paraboloid."""
     sphere, paraboloid = spheres[rho].event(name), spheres[None].event(name)
     return np.array([sphere.approach - paraboloid.approach, sphere.load - paraboloid.load])
-
-
-@pytest.mark.parametrize("ratio", [1.0, 3.0, 100.0])
-def test_the_gap_between_two_spheres_ends_with_the_smaller_one(ratio):
-    gap = between_spheres(5.0, ratio)
-    smaller = 5.0 * (1 + 1 / ratio)
-    assert gap.end == pytest.approx(smaller)
-    r = np.array([0.0, 0.3, 0.9]) * smaller
-    heights = sum(R - np.sqrt(R**2 - r**2) for R in (smaller, 5.0 * (1 + ratio)))
-    np.testing.assert_allclose(gap.height(r), 5.0 * heights, rtol=1e-12, atol=1e-12)

@@ -68,15 +68,6 @@ def test_a_pool_of_processes_finds_the_same(found):
         assert halfspace.sweep(TABORS, rtol=RTOL, map=pool.map) == found
 
 
-def test_parts_of_the_contact_reach_every_curve(found):
-    other = halfspace.sweep([1.0], rtol=RTOL, profile=halfspace.profiles.Power(4), to_load=3.0)
-    assert (
-        other.events["pull_off"].load[0]
-        == halfspace.trace(1.0, rtol=RTOL, profile=halfspace.profiles.Power(4), to_load=3.0).event("pull_off").load
-    )
-    assert abs(other.events["pull_off"].load[0] - found.events["pull_off"].load[2]) > 0.1
-
-
 def test_a_loss_that_cannot_be_told_is_not_told():
     near = halfspace.sweep(0.697214614, rtol=RTOL)
     assert np.isnan(near.energy_lost).all()
@@ -155,7 +146,7 @@ def test_a_range_is_of_equal_ratios_with_both_ends(text, values):
     assert tabors_of([text, text]) == tabors_of([text])
 
 
-@pytest.mark.parametrize("text", ["1:2", "a", "1:2:x", "0:1:5", "-1:2:5", "1:2:1", "1:2:3:4", "400", "nan", "1:inf:5"])
+@pytest.mark.parametrize("text", ["1:2", "1:2:x", "0:1:5", "1:2:1", "1:2:3:4", "400", "1:inf:5", "1:2:99999999999"])
 def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, text):
     table = tmp_path / "table.csv"
     assert cli.main(["sweep", f"--tabor={text}", "--csv", str(table)]) == 2
@@ -163,11 +154,6 @@ def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, tex
     assert err.count("\n") == 1
     assert "; " in err
     assert not table.exists()
-
-
-def test_a_range_too_long_for_a_table_is_refused(capsys, tmp_path):
-    assert cli.main(["sweep", "--tabor", "1:2:99999999999", "--csv", str(tmp_path / "table.csv")]) == 2
-    assert "COUNT 2 to 100000; write 0.05:50:200, say\n" in capsys.readouterr().err
 
 
 def counted(tabor, **asked):

@@ -47,6 +47,7 @@ CONTACTS = {  # what was wrong: the contact, its tolerance, and the tighter one
     "contact born between folds": (28.9388, {"law": PowerLaw(3.32, 11.7), "profile": Sphere(973.6)}, 1e-4, 1e-6),
     "a fold passed on the axis": (10.0, {"profile": Sphere(100.0)}, 1e-7, 1e-9),
     "two neighbouring grids erred alike": (1.27, {"law": Morse(11.3)}, 1e-4, 1e-6),
+    "a sharp edge on a sphere": (100.0, {"profile": Sphere(1e4)}, 1e-3, 1e-5),
     "four coarse grids agreed under no load": (4.77, {"to_load": 1.94}, 1.7e-3, 1e-6),
 }
 

@@ -41,7 +41,7 @@ def _misses(path, truth):
 
 
 @pytest.mark.parametrize("kernel", STRAIGHT)
-@pytest.mark.parametrize("tabor", [0.05, 1.0, 5.0])
+@pytest.mark.parametrize("tabor", [0.05, 5.0])
 def test_events_are_right_within_their_estimates_and_as_accurate_as_asked(tabor, kernel):
     truth = halfspace.trace(tabor, rtol=1e-9)
     for rtol in (1e-3, 1e-5):

@@ -8,11 +8,9 @@ from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import sliding
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
-from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.grid import FLAT, SurfaceCoordinate
 from halfspace.elastic.operators import (
-    Homogeneous,
     Interpolated,
     MovingGrid,
     Part,
@@ -20,11 +18,8 @@ from halfspace.elastic.operators import (
     chebyshev_lengths,
     kernels_of,
 )
-from halfspace.equilibrium.charts import Chart, trace_charts
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.equilibrium.search import find_events
 from halfspace.profiles.formulas import SphereSurface
-from halfspace.scales import Scales
 
 R = 4.0
 EDGE = 1.5  # contact radius at which operators are compared, between those that are known
@@ -111,14 +106,6 @@ def test_rates_against_finite_differences(body):
     np.testing.assert_allclose(rates[2], slope, atol=1e-8 * np.max(np.abs(above.compliance @ P)))
 
 
-def test_the_edge_row_interpolates_at_the_contact_edge(body):
-    """As a polynomial in the coordinate of the surface, which keeps the nodes' places within the cells, does."""
-    operator = interpolated(body, 3)
-    at, along = operator.at(EDGE), operator.grid.coordinate.along
-    assert operator.edge_row @ along(at.radii) == pytest.approx(float(along(np.array(EDGE))), rel=1e-12)
-    assert operator.edge_row @ at.radii == pytest.approx(EDGE, rel=1e-4)
-
-
 def test_the_jacobian_on_a_sphere_against_differences(body):
     problem = ContactProblem(interpolated(body, 3), 0.5, profile=SphereSurface(R))
     x = problem.undeformed(-0.2, EDGE)
@@ -127,20 +114,3 @@ def test_the_jacobian_on_a_sphere_against_differences(body):
     steps = h * np.eye(x.size)
     differences = np.array([(problem.residual(x + dx) - problem.residual(x - dx)) / (2 * h) for dx in steps]).T
     np.testing.assert_allclose(J, differences, atol=1e-6 * (1 + np.max(np.abs(J[:, -1]))), rtol=1e-6)
-
-
-def test_homogeneous_and_interpolated_have_the_same_events():
-    """On a grid with no length of its own, interpolation between any two radii is exact."""
-    charts = half_space_charts(Scales(1.0), resolution_for(Scales(1.0), 1e-4))
-    operator = charts[1].problem.operator
-    inner = operator.unit.finite
-    lines = inner.cells
-    moving = MovingGrid(0 * lines, lines, FLAT)
-    scales = np.array([0.5, 3.0])
-    made = [compliance.panels(a * lines, operator.unit.cell_nodes.shape[1]) for a in scales]
-    other = Chart(ContactProblem(_between(scales, made, moving), 1.0), charts[1].unknowns)
-    finite = Chart(ContactProblem(Homogeneous(inner), 1.0), charts[1].unknowns)
-    first, second = (find_events(trace_charts(c)) for c in ((charts[0], finite), (charts[0], other)))
-    for name in ("pull_off", "jump_on", "jump_off", "zero_load"):
-        a, b = (found[name].point.observables[:3] for found in (first, second))
-        np.testing.assert_allclose(a, b, atol=1e-8)

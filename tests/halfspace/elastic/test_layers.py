@@ -14,8 +14,6 @@ from halfspace.accuracy.layered import layered_charts
 from halfspace.elastic import compliance, grid, layered
 from halfspace.elastic.layered import image_compliance, images_of, layered_panels, nearly_homogeneous
 from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
-from halfspace.equilibrium import newton
-from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Hyperboloid
@@ -143,16 +141,6 @@ def test_pull_off_from_a_layer_hits_the_reference(on_layer, rtol):
     assert event.load_error <= rtol * 6
 
 
-def test_the_energy_on_a_layer_falls_by_the_work_of_the_load():
-    operator = layered_panels(images_of(Layer(2, 0.3)), grid.graded(1.4, 0.1, 60.0), 10)
-    problem, step = ContactProblem(operator, 1.0), 1e-4
-    x = problem.undeformed(0.5)
-    x[:-2] = np.maximum(x[:-2], 0.0)
-    below, middle, above = (newton.solve(problem, x, newton.approach(0.5 + d)).x for d in (-step, 0.0, step))
-    slope = (problem.energy(above) - problem.energy(below)) / (2 * step)
-    assert slope == pytest.approx(problem.load(middle), rel=1e-6)
-
-
 @pytest.mark.parametrize(
     ("body", "alike"),
     [(Coated(1.0, 1.0, 0.2, 0.2), None), (Layers([Stratum(0.6, 0.3), Stratum(1.4, 0.3)]), Layer(2, 0.3))],
@@ -231,14 +219,6 @@ def test_a_layer_goes_over_into_jkrs_as_ln_mu_over_mu_squared():
         assert abs(beyond) < limit, quantity
 
 
-@pytest.fixture(scope="module")
-def charted():
-    """Operators of a layer on the grids of a half-space, the last cell of which is infinite: it stands, or follows."""
-    scales = Scales(1.0, body=Layer(2.0, 0.3))
-    charts = layered_charts(scales, images_of(scales.body), resolution_for(scales, 1e-8))
-    return tuple(chart.problem.operator for chart in charts)
-
-
 @pytest.mark.parametrize("body", [Layer(2.0, 0.3), SOFT_BETWEEN, Coated(0.1, 100.0)], ids=repr)
 @pytest.mark.parametrize("spacing", [1.14, 1.17])
 def test_images_in_units_of_the_contact_deflect_alike(body, spacing):
@@ -267,18 +247,6 @@ def test_images_serve_a_contact_wider_than_the_attraction():
         found, wanted = (each.compliance @ pressure for each in (operator.at(radius), own))
         inside = operator.unit.radii < 1.0
         assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=1e-5 * np.abs(wanted).max())
-
-
-def test_the_scaled_operator_changes_as_its_rates_say(charted):
-    _, operator = charted
-    a, h = 1.4, 1e-4
-    pressure = np.exp(-(operator.unit.radii**2))
-    before, after = (operator.at(b) for b in (a - h, a + h))
-    radii, weights, deflection = operator.rates(a, pressure)
-    assert (after.radii - before.radii) / (2 * h) == pytest.approx(radii, rel=1e-9)
-    assert (after.weights - before.weights) / (2 * h) == pytest.approx(weights, rel=1e-9)
-    assert (after.compliance - before.compliance) @ pressure / (2 * h) == pytest.approx(deflection, rel=0, abs=1e-6)
-    assert np.abs(deflection).max() > 0.1
 
 
 @pytest.mark.parametrize(("rtol", "off"), [(1e-5, 2e-7)])

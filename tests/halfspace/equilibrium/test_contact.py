@@ -12,11 +12,10 @@ from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
-from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem, count_negative
+from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES
-from halfspace.profiles import PARABOLOID, Power, Sphere
-from halfspace.profiles.formulas import SphereSurface
+from halfspace.profiles import Sphere
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 
@@ -154,27 +153,11 @@ def test_negative_directions_are_negative_eigenvalues(problem, touching):
     assert problem.negative_directions(touching) == np.sum(eigenvalues.real < 0) == 1
 
 
-def test_inertia_of_an_indefinite_matrix():
-    rng = np.random.default_rng(2)
-    matrix = rng.normal(size=(40, 40))
-    matrix = matrix + matrix.T
-    np.fill_diagonal(matrix, 0)  # so that the factorisation meets 2 x 2 blocks
-    assert count_negative(matrix) == np.sum(np.linalg.eigvalsh(matrix) < 0)
-
-
 def test_newton_never_returns_an_unconverged_state(problem, touching):
     with pytest.raises(NotConverged, match=r"try"):
         newton.solve(problem, touching, newton.approach(-1.0), max_iterations=2)
     with pytest.raises(NotConverged, match=r"try"):
         newton.solve(problem, touching, newton.load(-7.0))  # no state pulls harder than 2 pi
-
-
-def test_a_grid_too_coarse_is_refused_with_the_numbers():
-    coarse = ContactProblem(compliance.triangles(grid.uniform(10.0, 0.05)), tabor=3.0)
-    x = coarse.undeformed(1.0)
-    x[:-2] = np.maximum(x[:-2], 0.0)
-    with pytest.raises(GridTooCoarse, match=r"spacing 0\.05 beta .* exceeds 0\.0111 beta for tabor 3; refine"):
-        coarse.require_resolution(x)
 
 
 @pytest.mark.parametrize("build", [compliance.triangles, compliance.bands])
@@ -250,41 +233,6 @@ def test_the_grid_must_be_fine_at_the_edge_to_the_limit(nodes, widths, tabor, wi
         require(1.001 * limit)
 
 
-def test_no_step_takes_a_gap_below_a_quarter_of_its_value(problem):
-    x = problem.undeformed(-5.0)
-    dx = np.zeros(x.size)
-    dx[3] = -10 * (x[3] + 1)
-    assert problem.longest_step(x, dx) == pytest.approx(0.075)
-    dx[3] = -0.75 * (x[3] + 1)
-    assert problem.longest_step(x, dx) == pytest.approx(1.0)
-    assert problem.longest_step(x, -1e3 * dx) == 1.0
-
-
-def test_a_step_keeps_the_contact_on_its_sphere():
-    """A trial beyond the sphere's end has no profile there: the square root of a negative number."""
-    problem = ContactProblem(Homogeneous(EDGE), 1.0, profile=SphereSurface(1000.0))
-    x = problem.undeformed(-5.0, scale=2.0)
-    step = np.eye(1, x.size, x.size - 1)[0]
-    room = 1000.0 - 2.0
-    assert problem.longest_step(x, room / 2 * step) == 1.0
-    assert problem.longest_step(x, 3 * room * step) == pytest.approx(0.25)
-
-
-@pytest.mark.parametrize("last", [1e-6, 1e-8])
-def test_a_gap_is_known_no_better_than_to_its_last_coefficients(last):
-    """Elements of degree 6 have 8 nodes in a cell; the last coefficient is not theirs, that before may change sign.
-
-    The one before that is carried on by the root of 2e-5/1e-3, by which the larger of two fall in two degrees.
-    """
-    operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 8)
-    coefficients = [0.1, 2e-2, 9e-3, 1e-3, 3e-4, 2e-5, -last, 8e-10]
-    gaps = np.polynomial.legendre.legval(2 * operator.radii - 1, coefficients)
-    problem, state = ContactProblem(operator, 1.0), np.append(gaps, [0.0, 1.0])
-    ripples = problem.ripples(state)
-    assert ripples[0] == pytest.approx(2e-5 * (2e-5 / 1e-3) ** 0.25, rel=1e-6, abs=0)
-    assert np.isnan(ripples[1]) == (gaps.min() > LENNARD_JONES.edge_gap)
-
-
 @pytest.mark.parametrize(("edge", "cells"), [(1.0, (0, 1)), (0.7, (0,))])
 def test_a_radius_is_known_as_the_gaps_last_coefficients(edge, cells):
     operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 6)
@@ -297,32 +245,6 @@ def test_a_radius_is_known_as_the_gaps_last_coefficients(edge, cells):
     ripple = problem.ripples(np.append(gaps, [0.0, 1.0]))[1]
     beside = np.prod([last[k] for k in cells]) ** (1 / len(cells))
     assert ripple == pytest.approx(beside / (0.3 + 0.5 * edge), rel=1e-3, abs=0)
-
-
-@pytest.mark.parametrize("nodes", [2, 5, 8])
-def test_values_on_the_axis_are_by_even_polynomials(nodes):
-    operator = compliance.panels(np.array([0.0, 1.3, 2.0]), nodes)
-    even = np.polynomial.Polynomial(np.linspace(-1.0, 2.0, nodes))
-    assert operator.axis_row @ even(operator.radii**2) == pytest.approx(-1.0, rel=1e-12)
-
-
-@pytest.mark.parametrize("profile", [PARABOLOID, Power(1.5)])
-def test_the_central_gap_is_known_under_any_profile(profile):
-    problem = ContactProblem(compliance.panels(np.array([0.0, 1.0, 2.0]), 5), 0.7, profile=profile)
-    state = problem.undeformed(-3.0)
-    state[:-2] += 1 - problem.operator.radii**2 / 2
-    assert problem.observables(state)[CENTRAL_GAP] == pytest.approx(4.0, abs=1e-12)
-
-
-def test_a_coefficient_small_by_accident_tells_no_radius():
-    """The cells of a fold where a dimple begins: even coefficients fall slowly, odd ones are nearly none."""
-    operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 7)
-    problem, even = ContactProblem(operator, 0.5), [0, 0, 4e-3, 0, 2e-4, 1e-9, 0]
-    deflection = 0.3 * (operator.radii - 0.7) + np.polynomial.legendre.legval(2 * (operator.radii % 1.0) - 1, even)
-    gaps = LENNARD_JONES.edge_gap + deflection + 0.5 * (problem.profile.height(operator.radii) - 0.7**2 / 2)
-    state = np.append(gaps, [0.0, 1.0])
-    slope = operator.continuous(problem.contact_radius(state))[1] @ gaps
-    assert problem.ripples(state)[1] == pytest.approx(1e-5 / slope, rel=1e-3, abs=0)
 
 
 @pytest.mark.parametrize(("tabor", "ratio", "rtol"), [(0.05, 10, 1e-4), (0.3, 10, 1e-3), (0.3, 10, 1e-1)])

@@ -206,7 +206,7 @@ def test_a_soft_cantilever_jumps_on_beyond_the_curve():
     assert Scales(path.tabor).rigid_jump_on(stiffness) == pytest.approx(1 - gap, rel=1e-6)
 
 
-@pytest.mark.parametrize("stiffness", [1e-2, 1e-6, 1e-12])
+@pytest.mark.parametrize("stiffness", [1e-2, 1e-12])
 @pytest.mark.parametrize("rtol", [1e-2, 1e-6])
 def test_jumps_of_any_soft_apparatus_hold_their_errors(truth, rtol, stiffness):
     """Against the tightest tolerance; where the jump on lies far out, against a rigid sphere too."""

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 import halfspace
 from fem_adhesion.elasticity.elimination import factor, inverses
 from halfspace.accuracy.grids import half_space_charts, resolution_for
-from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.conditions import ZERO_LOAD, locate
 from halfspace.equilibrium.contact import LOAD
@@ -98,14 +97,6 @@ def test_a_landing_beyond_the_end_of_the_curve_says_so(segments):
     cut = (first, replace(last, points=tuple(p for p in last.points if p.observables[1] < -4.0)))
     with pytest.raises(NotConverged, match=r"landing of the jump on lies beyond .* at load -[\d.]+ R dgamma; trace it"):
         jumps(cut, 100.0)
-
-
-def test_gaps_that_are_no_numbers_have_no_contact(segments):
-    problem = segments[0].problem
-    x = np.full(problem.undeformed(-1.0).size, np.nan)
-    assert math.isnan(problem.contact_radius(x))
-    with pytest.raises(NotConverged):
-        newton.solve(problem, np.append(x[:-1], 1.0), newton.approach(-1.0))
 
 
 def test_singular_matrices_are_a_solvers_end():

@@ -40,19 +40,6 @@ def test_rigid_load_is_the_law_summed_over_the_sphere(rho, whole):
         assert float(body.surface_load(1 - gap)) == pytest.approx(surface, rel=1e-8, abs=1e-12)
 
 
-def test_rigid_whole_sphere_by_the_divergence_theorem():
-    """The attraction of the wall on each slice of the solid, whose density is -d(sigma)/dh, summed over the volume."""
-    rho, gap = 7.0, 1.1
-
-    def slice_at(z):
-        h = gap + z
-        return 8 / 3 * (3 * h**-4 - 9 * h**-10) * (2 * rho * z - z**2) / 2 / rho
-
-    assert float(RigidSphere(rho, whole=True).load(1 - gap)) == pytest.approx(
-        -2 * np.pi * quad(slice_at, 0, 2 * rho, epsrel=1e-12)[0], rel=1e-10
-    )
-
-
 @pytest.mark.parametrize(("whole", "c"), [(False, 4 / 3), (True, 1.0)])
 def test_expansions_at_contact_and_at_pull_off(whole, c):
     rho = np.array([300.0, 1000.0, 3000.0])

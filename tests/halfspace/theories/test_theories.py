@@ -172,14 +172,6 @@ def test_maugis_keeps_its_contact_up_to_the_jump_above_0_938():
     assert above.load == pytest.approx(below.load, rel=1e-3)
 
 
-@pytest.mark.parametrize(("lam", "limit", "remedy"), [(0.0, "1e-6 <= maugis", "DMT-M"), (np.nan, "maugis", "JKR")])
-def test_maugis_out_of_range_is_refused(lam, limit, remedy):
-    with pytest.raises(ValueError, match=rf"maugis = .*{limit}.*{remedy}"):
-        MaugisDugdale(lam, tabor=1.0)
-    with pytest.raises(ValueError, match=r"tabor = -1 is outside"):
-        MaugisDugdale(1.0, tabor=-1.0)
-
-
 @pytest.mark.parametrize("lam", np.geomspace(1e-3, 1e3, 5))
 def test_carpick_fits_maugis(lam):
     """About a per cent in the load at pull-off and the radius under no load, which set the scales of the fit."""
