@@ -4,19 +4,18 @@ import numpy as np
 import pytest
 from facets import boundary_basis
 from references import strain_energy
-from skfem import CellBasis, ElementQuadP
+from skfem import ElementQuadP
 from whole_sphere import sphere_operator, surface_deflection
 
 import fem_adhesion
 from fem_adhesion import Block, Scene
-from fem_adhesion.elasticity.cells import cell_quadrature, stiffness_of
+from fem_adhesion.elasticity.cells import stiffness_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped, sliding
-from fem_adhesion.elasticity.space import Space, ring_measure
+from fem_adhesion.elasticity.space import Space
 from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh import curved, spheres
 from halfspace.elastic import grid
-from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.profiles.formulas import SphereSurface
 
 R = 2.5
@@ -48,13 +47,6 @@ def fine():
     return space(10)
 
 
-def test_volume(fine):
-    points = cell_quadrature(fine)
-    basis = CellBasis(fine.mesh, fine.element, quadrature=points, disable_doflocs=True)
-    volume = np.sum(ring_measure(basis.global_coordinates()[0]) * basis.dx)
-    assert volume == pytest.approx(2 / 3 * np.pi * R**3, rel=1e-9)
-
-
 @pytest.mark.parametrize(("traction", "area"), [("projected", 1), ("surface", 2)])
 def test_areas(traction, area):
     weights = condensed(6, traction=traction).operator.weights
@@ -67,17 +59,6 @@ def test_the_contact_surface_is_the_sphere_below_the_wall(fine):
     inside = r < 0.9 * R  # the profile has a vertical tangent at the equator
     assert np.max(np.abs(z + SphereSurface(R).height(r * inside) / R)[inside]) < 1e-8 * R
     assert np.max(z) < 0
-
-
-@pytest.mark.parametrize("area", ["projected", "surface"])
-def test_the_density_of_a_ring_and_its_derivative(area):
-    x, h = np.linspace(0.01, 2 * R, 50), 1e-5
-    coordinate = SurfaceCoordinate(R, area)
-    (r, slope), (ring, bend) = coordinate.radius(x), coordinate.ring(x)
-    arc = slope if area == "projected" else 1 / (1 + (x / (2 * R)) ** 2)  # dr/dx or ds/dx
-    np.testing.assert_allclose(ring, r * arc, rtol=1e-12, atol=1e-14)
-    np.testing.assert_allclose(bend, (coordinate.ring(x + h)[0] - coordinate.ring(x - h)[0]) / (2 * h), atol=1e-9)
-    np.testing.assert_allclose([coordinate.of(float(v)) for v in r[:-1]], x[:-1], rtol=1e-7)
 
 
 def surface_points(body, name):

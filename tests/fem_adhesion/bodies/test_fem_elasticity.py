@@ -20,10 +20,9 @@ from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, elast
 from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.elasticity.surface import boundary_points
-from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
+from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from fem_adhesion.mesh.file import refined
 from fem_adhesion.mesh.spheres import held_sphere
-from halfspace.elastic import grid
 
 NU = 0.3
 
@@ -54,22 +53,6 @@ def test_quarter_disc_respects_sizes_with_no_sharp_angle(fine):
     _, middle, longest = np.sort(edges, axis=0)
     smallest_angle = np.arcsin(np.abs(a[0] * b[1] - a[1] * b[0]) / (middle * longest))
     assert np.degrees(smallest_angle.min()) > 18.0  # 19.6 at any fineness
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: grid.graded(0.0, 0.3, 2.0, until=3.0), "from 0 to 3, lies outside 0 <= radius < extent = 2"),
-        (lambda: grid.graded(0.0, 0.3, 50.0, growth=1.0, until=3.0), "growth 1 is not above 1"),
-        (lambda: grid.graded(0.0, -0.3, 50.0, until=3.0), "finest -0.3 is not a positive length"),
-        (lambda: tensor_grid(np.array([0.0, 2.0, 1.0]), np.array([0.0, 1.0])), "r_breaks"),
-        (lambda: quarter_disc(np.nan, graded_size(0.3, 3.0, 0.3)), "radius = nan"),
-        (lambda: lame_parameters(0.5), "poisson = 0.5"),
-    ],
-)
-def test_bad_input_is_named(call, message):
-    with pytest.raises(ValueError, match=message):
-        call()
 
 
 # --- stiffness ---

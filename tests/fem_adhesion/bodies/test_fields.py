@@ -142,13 +142,6 @@ def test_traction_per_true_area_is_that_of_the_stress():
         assert np.max(error) < 5e-3 * np.max(np.abs(state.pressure[steep]))
 
 
-def test_elements_agree_with_the_half_space_beside_them(states):
-    for state in states:
-        beside = half_space_beside(state)
-        assert np.max(np.abs(beside.pressure - state.pressure)) < 2e-4 * np.max(np.abs(state.pressure))
-        assert beside.observables[:2] == pytest.approx(state.observables[:2], abs=2e-4)
-
-
 @pytest.mark.parametrize(
     "scene",
     [Scene(1.0, Layer(2.0)), Scene(1.0, law=Morse(3.0)), Scene(1.0, profile=Power(4))],

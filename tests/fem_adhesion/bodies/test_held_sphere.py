@@ -83,12 +83,6 @@ def test_facets_on_the_axis_are_known_despite_rounding():
     assert ends.sum() == pytest.approx(2 * R)
 
 
-@pytest.mark.parametrize("cap_angle", [0.9, 89.995, 91.0])
-def test_caps_out_of_range_are_refused(cap_angle):
-    with pytest.raises(ValueError, match="cap_angle"):
-        sphere(cap_angle)
-
-
 # --- elasticity ---
 
 
@@ -121,16 +115,6 @@ def test_error_falls_with_the_degree_in_spite_of_the_rim(grip):
     assert np.all(errors[1:] < errors[:-1] / 4)
     assert errors[2] < 1e-6
     assert bodies[2].unknowns < 10_000
-
-
-def test_rings_take_the_error_of_the_rim_down_with_their_size(monkeypatch):
-    """The stress is as d^(-1/2): what a cell of size h at the rim gets wrong of the compliance is as h."""
-    rings, values = module.RINGS, []
-    for count in (1, 2, 3, 7):
-        monkeypatch.setattr(module, "RINGS", rings[:count])
-        values.append(pole_compliance(held(sphere(30.0), 5)))
-    errors = np.array(values[-1]) - values[:-1]
-    assert errors[1:] / errors[:-1] == pytest.approx(0.2, abs=0.03)
 
 
 @pytest.mark.parametrize(

@@ -61,14 +61,6 @@ def test_the_examples_have_the_boundaries_of_their_solids(example):
     np.testing.assert_allclose(lengths, SOLIDS[name][1:], rtol=5e-7)
 
 
-def test_the_pole_is_at_the_origin_and_the_axis_at_zero(example):
-    _, mesh = example
-    contact = facet_nodes(mesh, mesh.boundaries["contact"])
-    assert np.all(mesh.p[0, facet_nodes(mesh, mesh.boundaries["axis"])] == 0.0)
-    assert np.all(mesh.p[:, contact[0]].T[np.argmin(mesh.p[0, contact[0]])] == 0.0)
-    assert mesh.p[1].max() == 0.0
-
-
 # --- a small body to write in all formats and to spoil ---
 
 PARABOLOID_VOLUME = np.pi * (0.64 * 0.8 - 0.64**2 / 4)  # z from -0.8 to -r^2/2, r < 0.8

@@ -6,7 +6,6 @@ from scenes import hemisphere, pair
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import HalfSpace, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
 
@@ -71,11 +70,3 @@ def jump_on_shift(counter, radius_ratio):
 def test_a_pair_is_as_far_from_one_modulus_as_measured(counter, shift):
     """At R/eps = 1e4; solved at rtol 1e-5."""
     assert jump_on_shift(counter, 1e4) == pytest.approx(shift, abs=1e-5)
-
-
-def test_a_counter_body_is_refused_where_it_means_nothing():
-    for counter in ((0.0,), (1.0,), (0.5, 0.3, 0.5), (0.5, 0.5)):
-        with pytest.raises(ValueError, match=r"outside .*;"):
-            against(*counter)
-    with pytest.raises(ValueError, match="a hemisphere meets another or a half-space"):
-        Scene(1.0, counter=HalfSpace(), share=0.5)
