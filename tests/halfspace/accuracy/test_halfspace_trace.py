@@ -263,3 +263,10 @@ def test_kernels_that_made_room_are_made_as_they_were(monkeypatch):
     monkeypatch.setattr(halfspace.elastic.operators.STORE, "room", 0.0)
     for name, event in halfspace.trace(1.0, **asked).events.items():
         assert (event.load, event.load_error) == (kept.events[name].load, kept.events[name].load_error)
+
+
+def test_kernels_that_the_store_has_no_room_for_are_refused(monkeypatch):
+    """Each state would take all of them anew."""
+    monkeypatch.setattr(halfspace.accuracy.finite_bodies, "ROOM", 5e4)
+    with pytest.raises(NotConverged, match=r"^rtol = 0.001 takes .* at \d+ contact radii, .* GB; take a larger rtol"):
+        halfspace.trace(1.0, profile=Sphere(100.0), rtol=1e-3)

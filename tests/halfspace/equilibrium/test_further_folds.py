@@ -25,7 +25,7 @@ from halfspace.accuracy.grids import half_space_charts, resolution_for, under_sp
 from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import is_fold
+from halfspace.equilibrium.events import is_fold, usual
 from halfspace.equilibrium.path import Steps
 from halfspace.equilibrium.search import confirmed
 from halfspace.errors import InputError, NotConverged, Unsolved
@@ -133,6 +133,14 @@ def test_elements_find_the_same_folds_and_jumps(winding):
     for name, jump in ours.jumps.items():
         other = theirs.jumps[name]
         assert abs(jump.energy.value - other.energy.value) <= jump.energy.error + other.energy.error, name
+
+
+def test_a_solver_that_misses_folds_disagrees():
+    ordinary = halfspace.trace(5.0, rtol=1e-3)
+    blind = replace(ordinary, events=usual(ordinary.events))
+    rows = [row for row in _compare_events(ordinary, blind, 1e-3) if row.quantity.startswith("fold")]
+    assert len(rows) == 6
+    assert {row.verdict for row in rows} == {"disagree"}
 
 
 @pytest.mark.parametrize("name", ["jump_on", "jump_on_2", "jump_off", "jump_off_2"])
