@@ -17,7 +17,7 @@ from fem_adhesion.common import record as common
 from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain
 from fem_adhesion.common.numbers import KINDS, PREFIXES, engineering, exponent_of, sizes_told, with_error
-from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
+from fem_adhesion.common.terminal import Column, Fitted, Prose, flow
 from fem_adhesion.registry import record_of, words_of
 from halfspace.laws import LENNARD_JONES
 
@@ -29,31 +29,31 @@ def report(assessment: Assessment) -> RenderableType:
     return Group(
         *_head(assessment),
         models_table(assessment),
-        *map(prose, _legend(assessment)),
+        *map(Prose, _legend(assessment)),
         Text(),
         *_deviations(assessment),
         *_thin_sample(assessment.contact, assessment.sample),
-        *(prose(f"caution: {line}") for line in assessment.cautions),
-        *map(prose, assessment.verdict),
+        *(Prose(f"caution: {line}") for line in assessment.cautions),
+        *map(Prose, assessment.verdict),
     )
 
 
 def _head(assessment: Assessment) -> Iterator[RenderableType]:
     contact, units = assessment.contact, assessment.contact.units
-    yield prose(f"regime: {assessment.regime}")
-    yield Flow([f"{name} = {value:.4g}" for name, value in assessment.parameters.items()])
+    yield Prose(f"regime: {assessment.regime}")
+    yield flow([f"{name} = {value:.4g}" for name, value in assessment.parameters.items()])
     ratios = (f"R/eps = {units.radius_ratio:.4g}", f"beta/R = {units.length / units.radius:.2g}")
-    yield Flow([*sizes_told(units), *ratios])
+    yield flow([*sizes_told(units), *ratios])
     law = (("spacing eps", units.spacing, "m"), ("work of adhesion", units.work_of_adhesion, "J/m^2"))
     implied = f"with them the Hamaker constant 16 pi dgamma eps^2 = {engineering(units.hamaker, 'J')}"
     if contact.law != LENNARD_JONES:
         implied = f"law {words_of(contact.law)}"
-    yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in law), implied])
+    yield flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in law), implied])
     fixed = math.isinf(contact.stiffness)
     yield Text("fixed grips" if fixed else f"cantilever: {engineering(contact.stiffness, 'N/m')}")
     if contact.thickness and contact.layer:
         h = f"{engineering(contact.thickness, 'm')} = {contact.layer.thickness:.4g} beta"
-        yield Flow([f"thin sample: h = {h}", STANDS[contact.foundation]], ", ")
+        yield flow([f"thin sample: h = {h}", STANDS[contact.foundation]], ", ")
     yield Text()
 
 
@@ -92,31 +92,28 @@ def contact_radius(assessment: Assessment) -> str:
 
 
 def models_table(assessment: Assessment) -> Fitted:
-    """A line for each quantity, a column for each model; the last ones are left out first."""
+    """A line for each quantity, a column for each model."""
     models, columns = assessment.models, []
     rows = [name for name in QUANTITIES if any(name in model.values for model in models)]
     largest = [max((m.values[name] for m in models if name in m.values), key=lambda q: abs(q.value)) for name in rows]
     scales = [exponent_of(quantity.value) for quantity in largest]
-    # What was computed first, the best of it last to be left out; theories by their distance from it.
-    kept = [model.model for model in (assessment.half_space, assessment.finite, assessment.profile) if model]
-    order = [*kept, *(d.model for d in assessment.distances if d.model not in kept)]
     for model in models:
         found = zip((model.values.get(name) for name in rows), scales, strict=True)
         cells = [with_error(quantity, 10.0**-exponent) if quantity else "-" for quantity, exponent in found]
-        columns.append(Column(model.model, cells, order.index(model.model)))
+        columns.append(Column(model.model, cells))
     units = [PREFIXES[exponent] + quantity.unit for quantity, exponent in zip(largest, scales, strict=True)]
-    return Fitted([_words(rows), Column("unit", units, text=True), *columns], ["what each model says"])
+    return Fitted([_words(rows), Column("unit", units, words=True), *columns], ["what each model says"])
 
 
-def _words(quantities: Iterable[str], header: str = "quantity", rank: int = 0) -> Column:
+def _words(quantities: Iterable[str], header: str = "quantity") -> Column:
     """Column of quantities in words."""
-    return Column(header, [WORDS.get(name, name) for name in quantities], rank, text=True, wraps=True)
+    return Column(header, [WORDS.get(name, name) for name in quantities], words=True)
 
 
-def _percents(header: str, parts: Iterable[Quantity | None], rank: int = 0) -> Column:
+def _percents(header: str, parts: Iterable[Quantity | None]) -> Column:
     """Column of parts, in per cent."""
     cells = [with_error(part, 100, USUAL.digits) if part else "-" for part in parts]
-    return Column(f"{header}\n%", cells, rank)
+    return Column(f"{header}\n%", cells)
 
 
 def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
@@ -126,9 +123,9 @@ def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
         return
     body = "thickness" if assessment.contact.layer else "finite body"
     causes = (
-        ("true profile", [d.profile for d in known], 1),
-        (body, [d.body for d in known], 1),
-        ("both", [d.total for d in known], 0),
+        ("true profile", [d.profile for d in known]),
+        (body, [d.body for d in known]),
+        ("both", [d.total for d in known]),
     )
     columns = [_percents(*cause) for cause in causes if any(cause[1])]
     title = f"difference from the {assessment.half_space.model}, in % of it, by cause"
@@ -142,7 +139,7 @@ def _thin_sample(contact: Contact, sample: ThinSample | None) -> Iterator[Render
         yield indentations_table(sample)
         until = with_error(sample.hertz_until, digits=USUAL.digits)
         reach = (sample.hertz_until.value * contact.thickness) ** 2 / contact.units.radius
-        yield prose(
+        yield Prose(
             "Chi: sqrt(R delta)/h of the indentation delta. Series: Dimitriadis et al. (2002), for chi up to 1. "
             f"Hertz's load is right to {100 * USUAL.wrong:g} % up to chi = {until}, here an indentation of "
             f"{engineering(reach, 'm')}."
@@ -158,7 +155,7 @@ def indentations_table(sample: ThinSample) -> Fitted:
     length, force = exponent_of(rows[-1].indentation), exponent_of(rows[-1].force.value)
     columns = [
         Column(f"indentation\n{PREFIXES[length]}m", [f"{row.indentation / 10.0**length:.4g}" for row in rows]),
-        Column("chi", [f"{row.chi:.4g}" for row in rows], 1),
+        Column("chi", [f"{row.chi:.4g}" for row in rows]),
         Column(f"force\n{PREFIXES[force]}N", [with_error(row.force, 10.0**-force) for row in rows]),
         _percents("Hertz off", [row.half_space for row in rows]),
         _percents("series off", [row.series for row in rows]),
@@ -173,7 +170,7 @@ def enough_table(sample: ThinSample) -> Fitted:
     columns = [
         _words((row.quantity for row in sample.enough), "in"),
         Column(f"thickness\n{PREFIXES[size]}m", thicknesses),
-        _words((row.worst or "-" for row in sample.enough), "worst", 1),
+        _words((row.worst or "-" for row in sample.enough), "worst"),
     ]
     return Fitted(columns, [f"from which thickness on the half-space is right to {100 * USUAL.wrong:g} %"])
 

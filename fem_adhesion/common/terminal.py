@@ -1,35 +1,31 @@
-"""Text and tables that fit the terminal: columns are dropped by rank and said to be, numbers and units never cut."""
+"""Text and tables that fit the terminal: nothing is cut, and a number is not parted from its unit."""
 
 from __future__ import annotations
 
 import os
 import re
 import sys
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from rich import box
-from rich.cells import cell_len
-from rich.console import Console, ConsoleOptions, JustifyMethod, RenderableType, RenderResult
-from rich.markup import escape
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
 from rich.text import Text
 
 from fem_adhesion.common import page as page_of
 
 WIDE = 150  # columns where there is no terminal
-LEAST = 14  # columns of text that may be wrapped, where it is so long
-PAGE = 18  # the same of a cell of a page, in which a number and its unit stay together
-NUMBER = re.compile(r"[(=-]*\d[\d.e+()-]*")
-UNIT = re.compile(r"(%|[yzafpnµmkMGT]?(m|N|Pa|J|N/m|J/m\^2)|s|R|dgamma(/eps)?|eps|beta|unknowns|points)[.,;:)]*")
+UNIT = r"(?:%|[yzafpnµmkMGT]?(?:m|N|Pa|J|N/m|J/m\^2)|s|R|eps|beta|unknowns|points)[.,;:)]*(?: |$)"
+TOGETHER = re.compile(rf"(?<=[\d)]) (?={UNIT})|(?<=\bR) (?=dgamma)|(?<=dgamma) (?=eps)")
+NO_BREAK = "\N{NO-BREAK SPACE}"
 
-
-FRAMES: Sequence[tuple[Mapping[str, Any], int, int]] = (
-    ({"box": box.HEAVY_HEAD}, 3, 1),
-    ({"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "padding": (0, 0)}, 1, -1),
-)
-"""How rich frames a table, and how many columns of the terminal the frame takes for each of its own and in all."""
+FRAMED: Mapping[str, Any] = {"box": box.HEAVY_HEAD}
+PLAIN: Mapping[str, Any] = {"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "padding": (0, 0)}
+LAYOUTS = ((60, FRAMED), (20, FRAMED), (20, PLAIN), (14, PLAIN))
+"""How a table may be laid out, the best first: widths of columns of words, and how rich frames the table."""
 
 
 def make_console(*, to_error: bool = False) -> Console:
@@ -38,100 +34,43 @@ def make_console(*, to_error: bool = False) -> Console:
     return Console(stderr=to_error, width=None if known else WIDE)
 
 
-@dataclass(frozen=True)
-class Flow:
-    """Parts of a line in rich's markup, such as ``R = 100 nm``, that is broken between them only."""
+def broken(text: str, width: int) -> str:
+    """Text in lines of a width, broken at blanks, but neither in a number and its unit nor at `NO_BREAK`."""
+    kept = (TOGETHER.sub(NO_BREAK, line) for line in text.split("\n"))
+    lines = (textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False) for line in kept)
+    return "\n".join(lines).replace(NO_BREAK, " ")
 
-    parts: Sequence[str]
-    separator: str = "; "
+
+@dataclass(frozen=True)
+class Prose:
+    """Sentences in lines as wide as the terminal."""
+
+    text: str
     style: str = ""
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Lines, each with as many parts as fit."""
+        """Text in lines."""
         del console
-        line = Text(style=self.style)
-        for number, part in enumerate(self.parts):
-            end = "" if number == len(self.parts) - 1 else self.separator
-            text = Text.from_markup(part + end)
-            if line and line.cell_len + len(part + end.rstrip()) > options.max_width:
-                line.rstrip()
-                yield line
-                line = Text(style=self.style)
-            line.append_text(text)
-        yield line
+        yield Text(broken(self.text, options.max_width), self.style)
 
 
-def prose(text: str) -> Flow:
-    """Sentences that are broken between words, but not between a number and its unit."""
-    return Flow([escape(part) for part in _words(text)], " ")
-
-
-def _words(text: str) -> list[str]:
-    """Words of a text, a number and its unit being one."""
-    parts: list[str] = []
-    glued = False  # whether the last word is a number, or the unit of one
-    for word in text.split(" "):
-        joins = glued and bool(UNIT.fullmatch(word))
-        if joins:
-            parts[-1] += f" {word}"
-        else:
-            parts.append(word)
-        glued = joins or bool(NUMBER.fullmatch(word))
-    return parts
-
-
-def _wrapped(cell: str, width: int) -> Text:
-    """Cell of a table in lines of a width, broken as `prose` is."""
-    text, breaks, place = Text.from_markup(cell), [], 0
-    for line in text.plain.split("\n"):
-        used = 0
-        for part in _words(line):
-            if used and used + 1 + cell_len(part) > width:
-                breaks.append(place)
-                used = 0
-            used += cell_len(part) + bool(used)
-            place += len(part) + 1
-    lines = text.divide(breaks)
-    for part_of_text in lines:
-        part_of_text.rstrip()
-    return Text("\n").join(lines)
+def flow(parts: Sequence[str], separator: str = "; ", style: str = "") -> Prose:
+    """Parts of a line, such as ``R = 100 nm``, that is broken between them only."""
+    return Prose(separator.join(part.replace(" ", NO_BREAK) for part in parts), style)
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table, its header, with the unit below, and its cells in rich's markup.
-
-    One of rank 0 stays; the higher, the sooner it is left out, columns of one rank together. Words (`text`) are set to
-    the left, numbers to the right; what `wraps` may go on in the next line, and has so many columns of the terminal
-    even so.
-    """
+    """A column of a table, its header, with the unit below, and its cells: numbers, or words that may be broken."""
 
     header: str
     cells: Sequence[str]
-    rank: int = 0
-    text: bool = False
-    wraps: bool = False
-    wrapped: int = LEAST
-
-    @property
-    def least(self) -> int:
-        """Least width in which nothing is cut: that of a line, or where words may go on below of a word."""
-        words = max(cell_len(word) for text in self._texts for line in text.split("\n") for word in _words(line))
-        return max(words, min(self.wrapped, self.whole)) if self.wraps else self.whole
-
-    @property
-    def whole(self) -> int:
-        """Width in which no line is broken."""
-        return max(cell_len(line) for text in self._texts for line in text.split("\n"))
-
-    @property
-    def _texts(self) -> list[str]:
-        return [Text.from_markup(text).plain for text in (self.header, *self.cells)]
+    words: bool = False
 
 
 @dataclass(frozen=True)
 class Fitted:
-    """A table that leaves out columns until it fits, and becomes a list where not even those of rank 0 do.
+    """A table that becomes a list, a paragraph for each row, where it does not fit.
 
     The first column names the row; title and caption are parts of the lines above and below, styles those of the rows.
     """
@@ -142,61 +81,40 @@ class Fitted:
     styles: Sequence[str] = ()
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Title, table or list, what was left out, and caption."""
-        del console
+        """Title, table or list, and caption."""
         if self.title:
-            yield Flow(self.title, style="italic")
-        ranks = sorted({column.rank for column in self.columns} - {0}, reverse=True)
-        fewer = [([column for column in self.columns if column.rank < rank], FRAMES[-1]) for rank in ranks]
-        for kept, (frame, each, once) in [*((self.columns, frame) for frame in FRAMES), *fewer]:
-            spare = options.max_width - each * len(kept) - once - sum(column.least for column in kept)
-            if spare >= 0:
-                yield self._table(kept, frame, _widths(kept, spare))
-                if left_out := [" ".join(column.header.split()) for column in self.columns if column not in kept]:
-                    yield Flow([f"left out at this width: {left_out[0]}", *left_out[1:]], ", ", "dim")
-                break
-        else:  # every row as a heading and a line for each of its cells
+            yield flow(self.title, style="italic")
+        tables = (self._table(*layout) for layout in LAYOUTS)
+        unbounded = options.update(max_width=10_000)
+        fitting = (t for t in tables if console.measure(t, options=unbounded).maximum <= options.max_width)
+        if table := next(fitting, None):
+            yield table
+        else:
             for first, *row in zip(*(column.cells for column in self.columns), strict=True):
-                yield Text.from_markup(first, style="bold")
-                for column, cell in zip(self.columns[1:], row, strict=True):
-                    yield Flow([f"  {' '.join(column.header.split())}:", " ".join(cell.split())], " ")
+                named = zip(self.columns[1:], row, strict=True)
+                parts = (f"{' '.join(column.header.split())}: {' '.join(cell.split())}" for column, cell in named)
+                yield Prose("; ".join([first, *parts]))
         if self.caption:
-            yield Flow(self.caption, style="dim italic")
+            yield flow(self.caption, style="dim italic")
 
-    def _table(self, columns: Sequence[Column], frame: Mapping[str, Any], widths: Sequence[int]) -> Table:
+    def _table(self, width: int, frame: Mapping[str, Any]) -> Table:
         made, laid = Table(**frame), []
-        for column, width in zip(columns, widths, strict=True):
-            justify: JustifyMethod = "left" if column.text else "right"
-            made.add_column(column.header, justify=justify, no_wrap=not column.wraps, width=width)
-            laid.append([_wrapped(cell, width) if column.wraps else cell for cell in column.cells])
+        for column in self.columns:
+            made.add_column(Text(column.header), justify="left" if column.words else "right", no_wrap=True)
+            laid.append([Text(broken(cell, width) if column.words else cell) for cell in column.cells])
         for row, cells in enumerate(zip(*laid, strict=True)):
             made.add_row(*cells, style=(self.styles[row] if self.styles else "") or None)
         return made
 
 
-def _widths(columns: Sequence[Column], spare: int) -> list[int]:
-    """Widths of columns: the least, and what is spare in equal parts, but to none more than its lines need."""
-    widths = [column.least for column in columns]
-    wanting = sorted((column.whole - column.least, place) for place, column in enumerate(columns))
-    for number, (need, place) in enumerate(wanting):
-        given = min(need, spare // (len(wanting) - number))
-        widths[place] += given
-        spare -= given
-    return widths
-
-
 def page(parts: Sequence[str | page_of.Table]) -> Iterator[RenderableType]:
-    """Lines and tables of a page, the tables fitted: the last columns are left out first.
-
-    Headers are broken after commas and colons, cells before what is in brackets and what they equal.
-    """
+    """Lines and tables of a page. Headers are broken after commas and colons, cells before brackets and `=`."""
     for part in parts:
         if not isinstance(part, page_of.Table):
             yield Text(part)
             continue
         columns = []
-        for rank, texts in enumerate(zip(part.columns, *part.rows, strict=True)):
-            header, *cells = (re.sub(r" (?=\(|= )", "\n", text.replace("[", r"\[")) for text in texts)
-            header = re.sub(r"(?<=[:,]) ", "\n", header)
-            columns.append(Column(header, cells, rank, text=True, wraps=True, wrapped=PAGE))
+        for texts in zip(part.columns, *part.rows, strict=True):
+            header, *cells = (re.sub(r" (?=\(|= )", "\n", text) for text in texts)
+            columns.append(Column(re.sub(r"(?<=[:,]) ", "\n", header), cells, words=True))
         yield from (Text(), Text(f"## {part.title}"), Text(), Fitted(columns))

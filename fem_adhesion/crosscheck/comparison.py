@@ -164,7 +164,6 @@ SHORT = {
     "closed form": "cf",
 }
 WORDS = ("quantity", "unit", "verdict")  # columns without numbers
-RANKS = (0, 1, 1, 1, 2, 3, 3, 4, 0)  # of the columns
 STYLES = {"agree": "green", "disagree": "bold red", "inconclusive": "yellow"}
 
 
@@ -176,12 +175,10 @@ def columns(between: Pair = SOLVERS) -> tuple[str, ...]:
 
 def crosscheck_tables(case: Case) -> list[Fitted]:
     """Tables of a case, one for each pair of sources; the first says what was compared, its verdict and its cost."""
-    from rich.markup import escape
-
     from fem_adhesion.common.terminal import Column, Fitted
 
-    *parts, last = map(escape, case.scene.words)
-    title = [*parts, f"{last}: [{STYLES[case.verdict]}]{case.verdict}[/]"]
+    *parts, last = case.scene.words
+    title = [*parts, f"{last}: {case.verdict}"]
     cost = [
         f"{name} {told['unknowns']} unknowns, {told['seconds']:.2f} s, {told['tolerance']}"
         for name, told in case.solutions.items()
@@ -189,8 +186,8 @@ def crosscheck_tables(case: Case) -> list[Fitted]:
     tables: list[Fitted] = []
     for between in dict.fromkeys(row.between for row in case.rows):
         own = [row for row in case.rows if row.between == between]
-        named = zip(columns(between), zip(*map(cells, own), strict=True), RANKS, strict=True)
-        made = [Column(name, texts, rank, name in WORDS, wraps=name == "quantity") for name, texts, rank in named]
+        named = zip(columns(between), zip(*map(cells, own), strict=True), strict=True)
+        made = [Column(name, texts, name in WORDS) for name, texts in named]
         styles = ["" if row.verdict == "agree" else STYLES[row.verdict] for row in own]
         tables.append(Fitted(made, [" and ".join(between)] if tables else title, [] if tables else cost, styles))
     return tables

@@ -63,7 +63,7 @@ def add_options(command: Parser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Trace the curve, write what is asked for and print the events."""
     from fem_adhesion.common.files import directory_written_aside
-    from fem_adhesion.common.terminal import prose
+    from fem_adhesion.common.terminal import Prose
     from fem_adhesion.curve import terminal
     from fem_adhesion.curve.solve import solve
 
@@ -94,7 +94,7 @@ def run(options: argparse.Namespace) -> int:
     console = console_beside(options.json, options.csv)
     terminal.show(curves, console)
     if collapsed:
-        console.print(prose(collapsed.told), highlight=False)
+        console.print(Prose(collapsed.told))
     return AGREE
 
 

@@ -7,13 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from plotille import Canvas
 from rich.console import Console
-from rich.markup import escape
 from rich.text import Text
 
 from fem_adhesion.common import lines
 from fem_adhesion.common.contact import edge_told
 from fem_adhesion.common.numbers import engineering, sizes_told, with_error
-from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
+from fem_adhesion.common.terminal import Column, Fitted, Prose, flow
 from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import WEAK_FORM, Curves, Scale
 from halfspace.equilibrium.contact import OBSERVABLES
@@ -31,31 +30,30 @@ EVENTS: Mapping[str, str] = {
 }
 LETTERS: Mapping[str, str] = {"pull_off": "P", "jump_on": "A", "jump_off": "C", "zero_load": "Z"}
 COLOURS = {lines.STABLE: "bright_blue", lines.GRIPS_ONLY: "cyan", lines.UNSTABLE: "yellow"}
-RANKS = {"approach": 0, "load": 0, "contact_radius": 1, "central_gap": 2}  # by which columns are left out
 
 
 def show(curves: Curves, console: Console) -> None:
     """Print everything; the plot only in a terminal."""
     console.print(table(curves))
     for line in notes(curves):
-        console.print(prose(line), highlight=False)
+        console.print(Prose(line))
     if console.is_terminal and curves.solver != WEAK_FORM:
         console.print(plot(curves, min(USUAL.columns, console.width - USUAL.margin)))
-        console.print(Flow(_key(curves), ", "))
+        console.print(flow(_key(curves), ", "))
 
 
 def table(curves: Curves) -> Fitted:
     """A line for each event of each solver, and for where each jump lands."""
     units, rows = curves.scales, list(_rows(curves))
-    words = Column("state", [words for words, *_ in rows], text=True, wraps=True)
-    # The solver tells rows apart only where there are two.
-    solver = Column("solver", [name for _, name, *_ in rows], 0 if len(curves.paths) > 1 else 3, text=True, wraps=True)
+    states = [Column("state", [words for words, *_ in rows], words=True)]
+    if len(curves.paths) > 1:
+        states.append(Column("solver", [name for _, name, *_ in rows], words=True))
     numbers = zip(*(_cells(event, units, missed) for _, _, event, missed in rows), strict=True)
     columns = [
-        Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts, RANKS[name])
+        Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts)
         for name, texts in zip(OBSERVABLES, numbers, strict=True)
     ]
-    return Fitted([words, solver, *columns], list(_title(curves)))
+    return Fitted([*states, *columns], list(_title(curves)))
 
 
 def _rows(curves: Curves) -> Iterator[tuple[str, str, Event, Sequence[str]]]:
@@ -89,9 +87,9 @@ def _cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> I
 
 
 def _title(curves: Curves) -> Iterator[str]:
-    """What was solved, in rich's markup."""
+    """What was solved."""
     scene, units = curves.question.scene, curves.question.units
-    yield from map(escape, scene.words)
+    yield from scene.words
     if units:
         yield from sizes_told(units)
     if units and scene.law == LENNARD_JONES:

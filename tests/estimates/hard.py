@@ -13,7 +13,6 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any, NamedTuple
 
 from judging import judge
-from rich.markup import escape
 
 from fem_adhesion.common.facts import versions
 from fem_adhesion.common.files import directory_written_aside
@@ -118,7 +117,6 @@ def _refused(case, refusal):
 # Tables and files
 
 STYLES = {"converged": "green", "refused": "cyan", "wrong": "bold red"}
-RANKS = {"error": 1, "estimate": 1, "seconds": 2, "Newton steps": 3}  # by which columns are left out
 
 
 def summary(rows):
@@ -130,18 +128,18 @@ def summary(rows):
 def cases_table(rows):
     """One line for each case: the ending declared, the one found; a refusal in its own words."""
     columns = {
-        "case": [escape(row.name) for row in rows],
+        "case": [row.name for row in rows],
         "expected": [row.expected for row in rows],
-        "found": [f"[{STYLES[row.outcome]}]{escape(row.found)}[/]" for row in rows],
+        "found": [row.found for row in rows],
         "error": [_small(row.error) for row in rows],
         "estimate": [_small(row.estimate) for row in rows],
         "Newton steps": [str(row.newton_steps or "-") for row in rows],
         "seconds": [f"{row.seconds:.2f}" for row in rows],
-        "compared, or refused because": [escape(row.message) for row in rows],
+        "compared, or refused because": [row.message for row in rows],
     }
     words = {"case", "expected", "found", "compared, or refused because"}
-    shown = [Column(h, c, RANKS.get(h, 0), h in words, wraps=h in words) for h, c in columns.items()]
-    return Fitted(shown, [summary(rows)])
+    shown = [Column(h, c, h in words) for h, c in columns.items()]
+    return Fitted(shown, [summary(rows)], styles=[STYLES[row.outcome] for row in rows])
 
 
 def locking_table(rows):
@@ -154,7 +152,7 @@ def locking_table(rows):
         "remedy": [row.remedy for row in rows],
     }
     title = "locking: largest error of the deflection under a smooth pressure"
-    return Fitted([Column(h, c, text=True, wraps=h == "remedy") for h, c in columns.items()], [title])
+    return Fitted([Column(h, c, words=True) for h, c in columns.items()], [title])
 
 
 def _small(value):

@@ -64,7 +64,10 @@ def _printed(cell):
 
 
 def _rows(curves):
-    return list(zip(*(column.cells for column in curve_terminal.table(curves).columns), strict=True))
+    """State, solver and numbers of each row; the table names the solver where there are two."""
+    states, *others = (column.cells for column in curve_terminal.table(curves).columns)
+    solver = [] if len(curves.paths) > 1 else [[curves.solver] * len(states)]
+    return list(zip(states, *solver, *others, strict=True))
 
 
 def _shown(what, width, *, terminal=True):
@@ -193,7 +196,7 @@ def test_how_far_folds_are_is_said_and_doubt_disagrees_not(both, margin, jumps, 
 
 def test_a_material_gives_si(real):
     table = curve_terminal.table(real)
-    assert [column.header.split("\n") for column in table.columns[2:]] == [
+    assert [column.header.split("\n") for column in table.columns[-4:]] == [
         ["approach", "nm"],
         ["load", "nN"],
         ["central gap", "nm"],
