@@ -93,7 +93,9 @@ class Fitted:
             for first, *row in zip(*(column.cells for column in self.columns), strict=True):
                 named = zip(self.columns[1:], row, strict=True)
                 parts = (f"{' '.join(column.header.split())}: {' '.join(cell.split())}" for column, cell in named)
-                yield Prose("; ".join([first, *parts]))
+                yield Prose(
+                    "; ".join([first, *(part.replace(" ", NO_BREAK) if len(part) < 40 else part for part in parts)])
+                )
         if self.caption:
             yield flow(self.caption, style="dim italic")
 
