@@ -50,6 +50,7 @@ class ChartSettings:
     together: int = 4  # grids integrated at once: with all of a curve's it took 0.18 GB more, and no less time
     across: float = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
     roughly: float = 1e-3  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again
+    around: float = 1.05  # by which contact radii differ from where a chart for one event is made; 6 operators
     steps: int = 25  # per unit of the logarithm: charts end where those of like contacts do, to be the same
 
 
@@ -145,12 +146,27 @@ class SizedBody(Valued):
         are some for contacts wider than is planned for, as that of a rigid body may be: beyond its ends a polynomial
         leaves any error.
         """
-        body, end = self.scales.profile.end, float(self.coordinate.radius(CHARTS.nearly * self.outer[:1])[0][0])
+        body, end = self.scales.profile.end, self._widest
         widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * body)
         require_narrow(widest, end)
         farther = max(widest, min(CHARTS.farther * widest, CHARTS.nearly * body, end))
         ends, counts = self._parts(min(self.leave, widest / 2), farther, error)
         return self.centred(), self.over(ends, counts, widest)
+
+    def around(self, radius: float, error: float) -> tuple[float, float, Chart]:
+        """Chart for a contact radius in beta, erring as that of a curve, and the radii from and to which it serves.
+
+        It is the one fine on the axis for contacts that this serves, else one that follows them near the radius.
+        """
+        if radius <= self.leave:
+            return 0.0, self.leave, self.centred()
+        least, most = radius / CHARTS.around, min(CHARTS.around * radius, self._widest)
+        return least, most, self.over([least, most], [self.operators_between(least, most, error)], most)
+
+    @property
+    def _widest(self) -> float:
+        """Contact radius in beta that the cells which move can carry."""
+        return float(self.coordinate.radius(CHARTS.nearly * self.outer[:1])[0][0])
 
     def _parts(self, least: float, most: float, error: float) -> tuple[list[float], list[int]]:
         """Ends of the parts of a range of contact radii, halved until none takes more than `most`, and operators."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from halfspace.accuracy.finite_bodies import CHARTS, SizedBody
 from halfspace.accuracy.stages import Charted, Discretised
-from halfspace.equilibrium.charts import Chart, Stage, moved, undeformed_radius
+from halfspace.equilibrium.charts import Chart, Stage, moved, settled, undeformed_radius
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import Unsolved
@@ -64,11 +64,13 @@ class Gridded(Protocol):
 class Standing(WhereAsked):
     """A stage on which every event has a grid of its own that stands still, finest where its contact ends.
 
-    `along` makes the stage for the points of a curve when it is first asked for.
+    `along` makes the stage for the points of a curve when it is first asked for. `near` is the stage for an event that
+    is not found on its own grid, that of a curve if it is not given.
     """
 
     body: Gridded
     along: Callable[[], Stage]
+    near: Stage | None = None
 
     def make(self, radius: float) -> tuple[float, float, Chart]:
         """Chart for a contact radius in beta, and the radii from and to which it serves."""
@@ -82,12 +84,27 @@ class Standing(WhereAsked):
 
         Over a grid that stands still Newton's method does not take an edge as sharp as it is between its cells far.
         """
-        return moved(event, problem) or moved(event, self.everywhere(event).problem)
+        return moved(event, problem) or settled(event, self.near or self.everywhere, moved)
 
     @cached_property
     def everywhere(self) -> Stage:
         """That for the points of a curve."""
         return self.along()
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Following(WhereAsked):
+    """A stage whose charts follow the contact, each near a radius where it was asked for.
+
+    Their operators leave so much of loads in R dgamma and gaps in eps.
+    """
+
+    body: SizedBody
+    left: float
+
+    def make(self, radius: float) -> tuple[float, float, Chart]:
+        """Chart for a contact radius in beta, and the radii from and to which it serves."""
+        return self.body.around(radius, self.left)
 
 
 def standing(body: SizedBody, left: float = CHARTS.roughly) -> Standing:
@@ -96,7 +113,7 @@ def standing(body: SizedBody, left: float = CHARTS.roughly) -> Standing:
     Points of the curve share operators interpolated between radii, which leave so much of loads in R dgamma and gaps in
     eps.
     """
-    return Standing(body, partial(_along, body, left))
+    return Standing(body, partial(_along, body, left), Following(body, left))
 
 
 def _along(body: SizedBody, left: float) -> Stage:
