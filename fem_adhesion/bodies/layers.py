@@ -72,8 +72,13 @@ class Stratified(Strata, Body):
         return scales.whole_radius((WIDTH * scales.widened) ** 2 / 2)
 
     def layout(self, R: float, how: Discretisation) -> Layout:
-        """Cells up to the end of what attracts, or of the surface over it; on a rigid base those far out are rigid."""
-        slender = math.inf if self.held == "substrate" else SLENDER * self.interfaces[-1]
+        """Cells up to the end of what attracts, or of the surface over it; those far out are rigid.
+
+        What an elastic base yields there, of the load over the distance, is nothing beside the gap. Cells 1e10 times as
+        long as deep made the stiffness singular.
+        """
+        depth = self.interfaces[-1]
+        slender = SLENDER * (max(1.0, depth) if self.held == "substrate" else depth)
         return grid.equal_ratios(min(R, slender), R, most=how.growth), FLAT
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:

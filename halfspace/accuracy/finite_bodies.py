@@ -161,7 +161,8 @@ class SizedBody(Valued):
         if radius <= self.leave:
             return 0.0, self.leave, self.centred()
         least, most = radius / CHARTS.around, min(CHARTS.around * radius, self._widest)
-        return least, most, self.over([least, most], [self.operators_between(least, most, error)], most)
+        count, as_inside = self.operators_between(least, most, error), 2 * most  # cells are as long inside as outside
+        return least, most, self.over([least, most], [count], as_inside)
 
     @property
     def _widest(self) -> float:

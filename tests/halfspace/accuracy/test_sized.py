@@ -17,7 +17,8 @@ from fem_adhesion.discretise import sized_body
 from halfspace.accuracy.standing import standing
 from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.devices import cycle
-from halfspace.errors import InputError
+from halfspace.equilibrium.states import met_again
+from halfspace.errors import InputError, Unsolved
 from halfspace.profiles import PARABOLOID, Paraboloid, Sphere
 
 HEMISPHERE = Scene(1.0, Hemisphere(radius_ratio=30.0))
@@ -213,3 +214,21 @@ def from_paraboloid(spheres, rho, name):
     """Approach and load of an event less those of the paraboloid."""
     sphere, paraboloid = spheres[rho].event(name), spheres[None].event(name)
     return np.array([sphere.approach - paraboloid.approach, sphere.load - paraboloid.load])
+
+
+def test_an_event_that_its_own_grid_does_not_give_is_found_near_there_by_few_operators(monkeypatch):
+    scene, made = Scene(1.0, profile=Sphere(30.0)), []
+    body = sized_body(scene, Discretisation(5))
+    event = halfspace.trace(1.0, profile=Sphere(30.0), rtol=1e-3).stages[-1]["pull_off"]
+    expected = met_again(standing(body, 1e-8), event).point.observables
+
+    def on_what_follows(event, problem):
+        follows = problem.interface.follows_contact
+        return moved(event, problem) if follows else Unsolved("no convergence")
+
+    monkeypatch.setattr("halfspace.accuracy.standing.moved", on_what_follows)
+    counted = replace(body, make=lambda lines: made.append(lines) or body.make(lines))
+    found = met_again(standing(counted, 1e-8), event)
+    np.testing.assert_allclose(found.point.observables, expected, atol=2e-5)  # the cells are others, of degree 5
+    assert found.problem.interface.follows_contact
+    assert len(made) < 10
