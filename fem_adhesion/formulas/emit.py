@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from importlib.metadata import version
 from importlib.resources import files
+from itertools import chain
 from pathlib import Path
 from string import Template
 
@@ -41,6 +42,14 @@ def _words() -> dict[str, object]:
         variable = "v" if name in ("jump_on", "jump_off", "energy_lost") else "s"
         words |= {name: repr(tuple(value)), f"c_{name}": ", ".join(map(repr, value)), f"n_{name}": len(value)}
         words |= {f"tex_{name}": _sum(value, variable, "^"), f"md_{name}": _sum(value, variable, "^")}
+    flat = [
+        [piece["from"], piece["to"], *piece["middle"], *piece["slope"], *chain(*piece["sums"])] for piece in fits.FORCE
+    ]
+    first = fits.FORCE[0]
+    words |= {"n_pieces": len(flat), "n_cusp": len(first["middle"])}
+    words |= {"n_sums": len(first["sums"]), "n_series": len(first["sums"][0])}
+    words["c_pieces"] = ",\n".join("  {" + ", ".join(map(repr, numbers)) + "}" for numbers in flat)
+    words["pieces"] = "[\n" + "".join(f"    {list(piece.values())},\n" for piece in fits.FORCE) + "]"
     return words
 
 

@@ -1,13 +1,14 @@
 """Closed expressions for a paraboloid on a half-space under the 3-9 law, fitted to `halfspace.atlas`.
 
-They serve any Tabor parameter mu, and are exact in both limits, Bradley's and JKR's. For mu from 0.01 to 300 they are
-off by no more than
+They serve any Tabor parameter mu, and all but `load` are exact in both limits, Bradley's and JKR's. For mu from 0.01 to
+300 they are off by no more than
 
     pull_off_load       2.1e-5 of the load
     zero_load_radius    5.7e-5 of the radius
     jump_on_approach    2.7e-5 of |alpha*| + 1
     jump_off_approach   6.4e-4 of |alpha*|
-    energy_lost         3.4e-4 of the energy.
+    energy_lost         3.4e-4 of the energy
+    load                7.5e-3 of the pull-off load.
 
 Loads in R dgamma, radii in beta, approaches in eps, energies in R dgamma eps. Jumps are under fixed grips, and nan
 below the birth of folds at mu = b. Coefficients are in ascending order.
@@ -21,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebval
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 
@@ -29,6 +31,10 @@ from halfspace.values import Array
 
 CONSTANTS: dict[str, Any] = json.loads(Path(__file__).with_name("fits.json").read_text(encoding="utf-8"))
 """What is fitted, by ``python -m fem_adhesion.formulas.fit``: the formulas in C and Fortran have it from here too."""
+
+FORCE_FILE = Path(__file__).with_name("force.json")
+FORCE: list[dict[str, Any]] = json.loads(FORCE_FILE.read_text(encoding="utf-8"))
+"""Coefficients of `load`, by ``python -m fem_adhesion.formulas.fit_force``."""
 
 BIRTH: float = CONSTANTS["birth"]  # b
 RIGID_RADIUS = np.sqrt(2 * (3 ** (1 / 6) - 4 ** (-1 / 6)))  # where the gap under no load is that of the largest tension
@@ -99,3 +105,50 @@ def _jkr_lost() -> float:
 
 
 JKR_LOST = _jkr_lost()
+
+
+def load(approach: ArrayLike, tabor: ArrayLike, *, unloading: ArrayLike) -> Array:
+    """Load at an approach under fixed grips: loading up to the jump on, unloading down to the jump off (tear-off).
+
+    Past its end each branch goes over to the other. For loads up to 5 R dgamma and mu from 0.01 to 300, else nan.
+
+    With M = 1 + mu, y solves y^3 + 3 s y = approach/M - c: a cubic with one root where curves do not fold, and one a
+    branch where they do, from Cardano's formula. The load is 4 W_p q^3 (1 - q^3), W_p that of the pull-off, which is
+    JKR's with q^3 = (a/a0)^(3/2), and q = (r + Y)^(3/4) (1 + z) (c0 + c1 z + c2 z^2 ...), Y = y/0.8,
+    r = sqrt(1 + Y^2), z = Y/r. c, s and c0 ... are Chebyshev series in ln(mu) on three pieces.
+    """
+    alpha, mu, back = np.broadcast_arrays(np.asarray(approach, float), np.asarray(tabor, float), np.asarray(unloading))
+    q = np.full(alpha.shape, np.nan)
+    for piece in FORCE:
+        here = (piece["from"] <= mu) & (mu <= piece["to"])
+        t = place(mu[here], piece["from"], piece["to"])
+        middle, slope, *sums = (chebval(t, c) for c in (piece["middle"], piece["slope"], *piece["sums"]))
+        x = alpha[here] / (1 + mu[here]) - middle
+        beyond = np.abs(x) > 2 * np.maximum(-slope, 0) ** 1.5
+        y = root_of_cubic(x, slope, np.where(beyond, x > 0, back[here]))
+        q[here] = np.sum(sums * shapes(y, len(sums)), axis=0)
+    return np.asarray(4 * pull_off_load(mu) * q**3 * (1 - q**3))
+
+
+def place(tabor: Array, low: float, high: float) -> Array:
+    """Place of a Tabor parameter on a piece, -1 to 1."""
+    return np.asarray((2 * np.log(tabor) - np.log(low * high)) / np.log(high / low))
+
+
+def root_of_cubic(x: Array, s: Array, greatest: Array) -> Array:
+    """Root of y^3 + 3 s y = x: where there are three the greatest or the least; past its end that at the end."""
+    size = np.sqrt(np.maximum(np.abs(s), 1e-20))
+    c = x / (2 * size**3)
+    up, down = (np.maximum(sign * c, -1) for sign in (1, -1))
+    roots = [
+        np.where(k > 1, np.cosh(np.arccosh(np.maximum(k, 1)) / 3), np.cos(np.arccos(np.minimum(k, 1)) / 3))
+        for k in (up, down)
+    ]
+    return np.asarray(2 * size * np.where(s > 0, np.sinh(np.arcsinh(c) / 3), np.where(greatest, roots[0], -roots[1])))
+
+
+def shapes(y: Array, count: int) -> Array:
+    """Functions (count, n) of which q is a sum."""
+    Y = y / 0.8
+    r = np.sqrt(1 + Y**2)
+    return np.asarray((r + Y) ** 0.75 * (1 + Y / r) * (Y / r) ** np.arange(count)[:, None])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fem_adhesion import cli
-from fem_adhesion.formulas import emit, fit
+from fem_adhesion.formulas import emit, fit, fit_force
 from halfspace import atlas
 from halfspace.theories import closed_forms, fits
 
@@ -46,6 +46,12 @@ def test_coefficients_are_what_the_fit_gives():
     assert found.keys() == fits.CONSTANTS.keys()
     for name, value in found.items():
         np.testing.assert_allclose(value, fits.CONSTANTS[name], rtol=1e-3, atol=0)
+
+
+def test_coefficients_of_the_load_are_what_the_fit_gives():
+    stored = fits.FORCE[-1]
+    for name, value in fit_force.piece(stored["from"], stored["to"]).items():
+        np.testing.assert_allclose(value, stored[name], rtol=1e-3, atol=1e-4)
 
 
 def _within(name, values):
@@ -107,7 +113,66 @@ def test_fortran_has_every_function_that_c_gives_it(made):
     """Where no compiler is, at least the names meet."""
     bound = set(re.findall(r"bind\(c, name='(\w+)'\)", (made / "adhesion.f90").read_text()))
     assert bound == set(re.findall(r"double (\w+)\(", (made / "adhesion.c").read_text()))
-    assert bound == {f"adhesion_{name}_f" for name in EXACT}
+    assert bound == {f"adhesion_{name}_f" for name in (*EXACT, "load", "force")}
+
+
+@pytest.fixture(scope="module")
+def states():
+    """Rows (10,000, 4) of approach, Tabor, whether unloading, load over that of the pull-off."""
+    random, rows = np.random.default_rng(1), []
+    for mu in np.exp(random.uniform(np.log(0.01), np.log(300), 80)).tolist():
+        curve, least = atlas.curve(mu), atlas.pull_off(mu).load
+        stable = {name: ends for name, ends in curve.branches("approach").items() if not name.startswith("unstable")}
+        for name, (first, last) in stable.items():
+            approach = random.uniform(max(first, -4 * (1 + mu)), last, 160 // len(stable))
+            load = curve.at(approach=approach, branch=name).load
+            row = np.column_stack([approach, 0 * load + mu, 0 * load + (name != "separated"), load / -least])
+            rows.append(row[load < 5])
+    return np.concatenate(rows)
+
+
+def test_load_is_as_close_as_it_says_down_to_tear_off(python, made, tmp_path, states):
+    approach, mu, unloading, load = states.T
+    assert len(states) > 10_000
+    found = fits.load(approach, mu, unloading=unloading > 0)
+    assert np.max(np.abs(found / -fits.pull_off_load(mu) - load)) < float(emit.worst_errors()["load"])
+    by_python = [python.load(*row) for row in states[:, :3].tolist()]
+    np.testing.assert_allclose(by_python, found, rtol=1e-7, atol=1e-7)
+    (tmp_path / "main.c").write_text(
+        '#include <stdio.h>\n#include "adhesion.h"\nint main(void) { int n, back; double x, mu;'
+        ' if (scanf("%d", &n) != 1) return 1; while (scanf("%lf %lf %d", &x, &mu, &back) == 3)'
+        ' printf("%.17g\\n", adhesion_load(x, mu, back)); return 0; }\n'
+    )
+    program = str(tmp_path / "main")
+    command = [_compiler("gcc"), "-std=c99", f"-I{made}", str(tmp_path / "main.c"), "-o", program, "-lm"]
+    subprocess.run(command, check=True)
+    lines = "\n".join(f"{x!r} {m!r} {int(back)}" for x, m, back in states[:, :3].tolist())
+    out = subprocess.run(
+        [program], input=f"{len(states)}\n{lines}\n", capture_output=True, text=True, check=True
+    ).stdout
+    np.testing.assert_allclose(np.array(out.split(), float), found, rtol=1e-7, atol=1e-7)
+
+
+def test_load_past_tear_off_is_that_of_surfaces_apart(python):
+    off = float(atlas.jump_off(5.0).take_off.approach)
+    apart = float(atlas.curve(5.0).at(approach=off - 1, branch="separated").load)
+    assert fits.load(off - 1, 5.0, unloading=True) == pytest.approx(apart, abs=0.0375)
+    assert fits.load(0.0, 5.0, unloading=False) == fits.load(0.0, 5.0, unloading=True)  # it has jumped on
+    assert np.isnan(fits.load(0.0, 301.0, unloading=True))
+    eps = np.cbrt(R * 0.04**2 / E**2) / 5
+    own = python.force(-2 * eps, R, E, 0.04, 5.0, True)
+    assert own == pytest.approx(R * 0.04 * float(fits.load(-2.0, 5.0, unloading=True)), rel=1e-9, abs=0)
+
+
+@pytest.mark.parametrize("tabor", [0.5, 0.6, 0.69])
+def test_a_pair_of_complex_folds_tends_to_both_folds(tabor):
+    """Below their birth the middle of both goes on as it was above, and the square of their distance too."""
+    fold, birth = fit_force.complex_fold(tabor), BIRTH
+    above = birth + (birth - tabor)
+    on, off = (float(jump(above).take_off.approach) for jump in (atlas.jump_on, atlas.jump_off))
+    middle = float(atlas.jump_on(birth + 1e-9).take_off.approach)
+    assert fold.real - middle == pytest.approx(middle - (on + off) / 2, rel=0.1)
+    assert 2 * abs(fold.imag) == pytest.approx(on - off, rel=0.35)
 
 
 R1, R2, E, GAMMA = 2.0e-6, 3.0e-6, 5.0e9, 0.02
