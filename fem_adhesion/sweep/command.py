@@ -8,8 +8,9 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fem_adhesion.common.files import STANDARD
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, DISAGREE, STANDARD, Command, Parser, add_workers, all_written, ended
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_workers, all_written, ended
 from fem_adhesion.common.scene_options import add_law, law_of
 from halfspace.errors import InputError
 
