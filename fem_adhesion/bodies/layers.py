@@ -27,7 +27,8 @@ WIDTH = 800.0  # width of the mesh in widths of a rigid attraction: the load lef
 # the roots of the denominator of the yield, (3 - 4 nu) cosh 2x + 2 x^2 + 5 - 12 nu + 8 nu^2, the first at nu = 1/2.
 DIED_OUT = 20.0
 # Thicknesses up to which strata on a rigid base yield to an attraction that reaches farther: its gap is wide there, and
-# they move by a part of their thickness; the stiffness along them falls short of that across by the square of this.
+# they move by a part of their thickness; the stiffness along them falls short of that across by the square of this. On
+# an elastic base thicknesses or beta, whichever is more.
 SLENDER = 1e5
 
 
@@ -74,7 +75,7 @@ class Stratified(Strata, Body):
     def layout(self, R: float, how: Discretisation) -> Layout:
         """Cells up to the end of what attracts, or of the surface over it; those far out are rigid.
 
-        What an elastic base yields there, of the load over the distance, is nothing beside the gap. Cells 1e10 times as
+        An elastic base yields there by the load over the distance, which is nothing beside the gap. Cells 1e10 times as
         long as deep made the stiffness singular.
         """
         depth = self.interfaces[-1]

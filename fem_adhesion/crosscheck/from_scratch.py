@@ -185,9 +185,7 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
     event, located = path.events[name], path.stages[-1][name]
     radius, reach = _places(located)
     coarse, fine = (_state(contact(radius, reach), located) for contact in (on_coarse, on_fine))
-    before = _state(
-        fine.at.contact, path.stages[-2][name]
-    )  # of the stage before: how much of ripples a stiff law makes
+    before = _state(fine.at.contact, path.stages[-2][name])  # how much of ripples a stiff law makes
     approach, load = map(event.estimate, ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
     balances, forces = (coarse.balance, fine.balance), (coarse.at.load, fine.at.load)

@@ -41,7 +41,7 @@ def _words() -> dict[str, object]:
             continue
         variable = "v" if name in ("jump_on", "jump_off", "energy_lost") else "s"
         words |= {name: repr(tuple(value)), f"c_{name}": ", ".join(map(repr, value)), f"n_{name}": len(value)}
-        words |= {f"tex_{name}": _sum(value, variable, "^"), f"md_{name}": _sum(value, variable, "^")}
+        words[f"sum_{name}"] = _sum(value, variable)
     flat = [
         [piece["from"], piece["to"], *piece["middle"], *piece["slope"], *chain(*piece["sums"])] for piece in fits.FORCE
     ]
@@ -53,8 +53,8 @@ def _words() -> dict[str, object]:
     return words
 
 
-def _sum(coefficients: list[float], variable: str, power: str) -> str:
+def _sum(coefficients: list[float], variable: str) -> str:
     """Polynomial as it is written by hand."""
-    factors = ["", f" {variable}", *(f" {variable}{power}{i}" for i in range(2, len(coefficients)))]
+    factors = ["", f" {variable}", *(f" {variable}^{i}" for i in range(2, len(coefficients)))]
     terms = (f"{c:+g}{factor}" for c, factor in zip(coefficients, factors, strict=False))
     return " ".join(terms).removeprefix("+").replace(" +", " + ").replace(" -", " - ")

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -62,7 +61,7 @@ def constants() -> dict[str, Any]:
         scale = np.abs(exact) + offset
         A = (limit * (1 - v))[:, None] * np.vander(v, terms, increasing=True)
         found[name] = list(quotient(A, exact - offset - limit, lambda _: np.ones(1), scale))
-    return {name: _rounded(value) for name, value in found.items()}
+    return {name: rounded(value, DIGITS) if isinstance(value, list) else value for name, value in found.items()}
 
 
 def quotient(A: Array, b: Array, below: Callable[[Array], Array], scale: Array) -> Array:
@@ -77,19 +76,25 @@ def quotient(A: Array, b: Array, below: Callable[[Array], Array], scale: Array) 
         off = np.abs((A @ x - b) / (under * scale))
         if off.max() < least and (under > 0).all():
             best, least = x, off.max()
-        lawson *= np.sqrt(off / off.max()) + 1e-9
-        lawson /= lawson.mean()
+        lawson = weighed_by(off, lawson, 1e-9)
     return best
+
+
+def weighed_by(off: Array, weights: Array, floor: float) -> Array:
+    """Weights (n,) of points, more where the deviations (n,) are larger (Lawson); the floor keeps every point."""
+    weights = weights * (np.sqrt(off / off.max()) + floor)
+    return np.asarray(weights / weights.mean())
+
+
+def rounded(values: Sequence[float] | Array, digits: int) -> Any:
+    """Lists of coefficients with so many significant digits."""
+    return np.vectorize(lambda c: float(f"{c:.{digits}g}"))(values).tolist()
 
 
 def _sum(s: Array, coefficients: Sequence[float] | Array) -> Array:
     return np.asarray(np.polynomial.polynomial.polyval(s, coefficients))
 
 
-def _rounded(value: Any) -> Any:
-    return [float(f"{c:.{DIGITS}g}") for c in value] if isinstance(value, list) else value
-
-
 if __name__ == "__main__":
     lines = ",\n".join(f"  {json.dumps(name)}: {json.dumps(value)}" for name, value in constants().items())
-    Path(fits.__file__).with_name("fits.json").write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+    fits.FILE.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")

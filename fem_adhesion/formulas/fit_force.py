@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.optimize import least_squares
 
+from fem_adhesion.formulas.fit import rounded, weighed_by
 from halfspace import atlas
 from halfspace.theories import fits
 from halfspace.values import Array
@@ -42,7 +42,7 @@ def piece(low: float, high: float) -> dict[str, Any]:
     middle, slope = _free(low, high, t, curves) if low < FOLDS[0][0] else _folds(low, high)
     coefficients = _sums(t, curves, middle, slope, ROUNDS)[0].reshape(TERMS, DEGREE + 1)
     numbers = {"middle": middle, "slope": slope, "sums": coefficients}
-    return {"from": low, "to": high} | {name: _rounded(values) for name, values in numbers.items()}
+    return {"from": low, "to": high} | {name: rounded(values, DIGITS) for name, values in numbers.items()}
 
 
 def _tabors(low: float, high: float, count: int) -> Array:
@@ -146,14 +146,9 @@ def _sums(t: Array, curves: dict[str, Array], middle: Array, slope: Array, round
         now = p**2 - (2 * (A @ x) ** 3 - 1) ** 2
         if np.abs(now).max() < least:
             best, off, least = x, now, np.abs(now).max()
-        lawson *= np.sqrt(np.abs(now) / np.abs(now).max()) + 0.02
-        lawson /= lawson.mean()
+        lawson = weighed_by(np.abs(now), lawson, 0.02)
     return best, off
 
 
-def _rounded(values: Array) -> Any:
-    return np.vectorize(lambda c: float(f"{c:.{DIGITS}g}"))(values).tolist()
-
-
 if __name__ == "__main__":
-    Path(fits.__file__).with_name("force.json").write_text(json.dumps(pieces()) + "\n", encoding="utf-8")
+    fits.FORCE_FILE.write_text(json.dumps(pieces()) + "\n", encoding="utf-8")

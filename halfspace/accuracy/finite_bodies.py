@@ -161,8 +161,9 @@ class SizedBody(Valued):
         if radius <= self.leave:
             return 0.0, self.leave, self.centred()
         least, most = radius / CHARTS.around, min(CHARTS.around * radius, self._widest)
-        count, as_inside = self.operators_between(least, most, error), 2 * most  # cells are as long inside as outside
-        return least, most, self.over([least, most], [count], as_inside)
+        count = self.operators_between(least, most, error)
+        # Inside the edge cells are as long as outside where the contact is half as wide as is planned for.
+        return least, most, self.over([least, most], [count], widest=2 * most)
 
     @property
     def _widest(self) -> float:

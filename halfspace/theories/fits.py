@@ -29,10 +29,10 @@ from numpy.typing import ArrayLike
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF, ZERO_LOAD_RADIUS
 from halfspace.values import Array
 
-CONSTANTS: dict[str, Any] = json.loads(Path(__file__).with_name("fits.json").read_text(encoding="utf-8"))
+FILE, FORCE_FILE = (Path(__file__).with_name(name) for name in ("fits.json", "force.json"))
+CONSTANTS: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 """What is fitted, by ``python -m fem_adhesion.formulas.fit``: the formulas in C and Fortran have it from here too."""
 
-FORCE_FILE = Path(__file__).with_name("force.json")
 FORCE: list[dict[str, Any]] = json.loads(FORCE_FILE.read_text(encoding="utf-8"))
 """Coefficients of `load`, by ``python -m fem_adhesion.formulas.fit_force``."""
 
