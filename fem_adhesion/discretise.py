@@ -164,7 +164,7 @@ def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
     material = body.material
     space = Space(mesh, TRIANGLE if isinstance(mesh, MeshTri) else quadrilateral(how.degree))
     held = exterior.of_material(FAR_FIELDS[body.held], body.beyond)
-    stiffness = stiffness_of(space, body.regions)
+    stiffness = partial(stiffness_of, space, body.regions)
     return condense(space, material.poisson, far_field=held, stiffness=stiffness, traction=material.area)
 
 

@@ -15,7 +15,7 @@ can meet. The pressure of the mixed form is lambda Pi div u, eliminated cell by 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -143,9 +143,9 @@ class Cells(Valued):
         return np.block([[r, z_r.transpose(0, 2, 1)], [z_r, z]])
 
 
-def cell_stiffness(space: Space, poisson: float) -> Array:
-    """Return the stiffness matrix of every cell, (cells, 2 n, 2 n), in E* beta, ordered as in ``space.cell_dofs``."""
-    return Cells.of(space).stiffness(of_gradient(elastic_matrix(poisson)))
+def cell_stiffness(cells: Cells, poisson: float) -> Array:
+    """Return the stiffness matrix of every cell, (c, 2 n, 2 n), in E* beta, ordered as in `Cells.displacements`."""
+    return cells.stiffness(of_gradient(elastic_matrix(poisson)))
 
 
 def of_gradient(D: Array) -> Array:
@@ -204,25 +204,33 @@ def projects(space: Space, poisson: float) -> bool:
     return space.element.refdom.nnodes == 4 and poisson >= REMEDY_FROM
 
 
-def stiffness_of(space: Space, materials: Sequence[Elastic]) -> Array:
-    """Stiffness of every cell, (cells, 2 n, 2 n), of the material of its region."""
-    K = np.empty((space.mesh.nelements, *2 * [len(space.cell_dofs)]))
+Stiffness = Callable[[], Iterator[tuple[Index, Array]]]
+"""Gives the stiffness (k, 2 n, 2 n) of all cells, few at a time, with their numbers (k,): whole it fills the memory."""
+
+
+def stiffness_of(space: Space, materials: Sequence[Elastic]) -> Iterator[tuple[Index, Array]]:
+    """Stiffness of every cell, of the material of its region, see `Stiffness`."""
     for cells, (poisson, modulus) in zip(space.regions(materials), materials, strict=True):
         part = space if len(materials) == 1 else Space(space.mesh.restrict(cells), space.element)
-        K[cells] = modulus * (projected_stiffness if projects(space, poisson) else cell_stiffness)(part, poisson)
-    return K
+        stiffness = projected_stiffness if projects(space, poisson) else cell_stiffness
+        for own, few in Cells.of(part).batches():
+            yield cells[own], modulus * stiffness(few, poisson)
 
 
-def projected_stiffness(space: Space, poisson: float) -> Array:
+def unprojected(space: Space, poisson: float) -> Iterator[tuple[Index, Array]]:
+    """Stiffness of every cell by displacements alone, see `Stiffness`."""
+    for own, few in Cells.of(space).batches():
+        yield np.arange(space.mesh.nelements)[own], cell_stiffness(few, poisson)
+
+
+def projected_stiffness(cells: Cells, poisson: float) -> Array:
     """Return the stiffness matrix of every quadrilateral with its dilatation projected; see `pressure_modes`.
 
     Parameters and result as of `cell_stiffness`.
     """
-    cells, lam = Cells.of(space), lame_parameters(poisson)[0]
     K = cells.stiffness(of_gradient(shear_matrix(poisson)))
-    for own, part in cells.batches():
-        projected = part.dilatations() @ part.pressures
-        K[own] += lam * projected @ projected.transpose(0, 2, 1)
+    projected = cells.dilatations() @ cells.pressures
+    K += lame_parameters(poisson)[0] * projected @ projected.transpose(0, 2, 1)
     return K
 
 

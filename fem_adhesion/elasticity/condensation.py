@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from scipy.linalg.blas import dtrsm
 
-from fem_adhesion.elasticity.cells import cell_stiffness
+from fem_adhesion.elasticity.cells import Stiffness, unprojected
 from fem_adhesion.elasticity.elimination import (
     Factors,
     Region,
@@ -76,14 +76,22 @@ class CondensedBody(Valued):
     """A block factorised once: its surface compliance, and the fields inside for a given surface pressure.
 
     Pressures are (q,) arrays at ``operator.radii``, positive in compression; all is dimensionless, E* = 1. The operator
-    gives the deflection of the surface from the pressure on it; `cells` (cells, 2 n, 2 n) are the stiffness.
+    gives the deflection of the surface from the pressure on it.
     """
 
     operator: ElasticOperator
     space: Space
-    cells: Array
+    stiffness: Stiffness
     exterior: Exterior
     surface: BoundaryPoints
+
+    @cached_property
+    def cells(self) -> Array:
+        """Stiffness of all cells, (cells, 2 n, 2 n)."""
+        K = np.empty((self.space.mesh.nelements, *2 * [len(self.space.cell_dofs)]))
+        for own, part in self.stiffness():
+            K[own] = part
+        return K
 
     @cached_property
     def factors(self) -> Factors:
@@ -130,7 +138,7 @@ def condense(
     *,
     far_field: FarField = point_load,
     points: int | None = None,
-    stiffness: Array | None = None,
+    stiffness: Stiffness | None = None,
     traction: str = "projected",
 ) -> CondensedBody:
     """Factorise the block once and condense it to its contact surface.
@@ -139,8 +147,8 @@ def condense(
     facets and w are the weights of 2 pi r dr, so a surface law assembled by quadrature at them is condensed exactly.
 
     The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.exterior`. Gauss's points on a
-    contact facet are more than the degree p of the element, p + 2 unless given. The stiffness (cells, 2 n, 2 n) of the
-    cells is that of displacements alone unless given; that of projected dilatations does not lock. With the traction
+    contact facet are more than the degree p of the element, p + 2 unless given. The stiffness of the cells is
+    that of displacements alone unless given; that of projected dilatations does not lock. With the traction
     "projected" the pressure, which is vertical, acts on the area projected on the plane of the contact, with "surface"
     on that of the surface. InputError unless 0 <= poisson < 0.5 and the points are enough.
     """
@@ -148,27 +156,28 @@ def condense(
     if points <= space.degree:
         raise InputError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
     surface, exterior = boundary_points(space, "contact", points), far_field(space, poisson)
-    cells = cell_stiffness(space, poisson) if stiffness is None else stiffness
-    yielding = flexibility(space, cells, exterior, space.components[1, surface.functions])
+    stiffness = stiffness or partial(unprojected, space, poisson)
+    yielding = flexibility(space, stiffness, exterior, space.components[1, surface.functions])
     operator = surface_operator(surface, exterior, yielding, traction)
-    return CondensedBody(operator, space, cells, exterior, surface)
+    return CondensedBody(operator, space, stiffness, exterior, surface)
 
 
-def eliminate_interiors(space: Space, K: Array) -> Array:
-    """Eliminate the interior unknowns from the (cells, 2 n, 2 n) cell matrices, which leaves those that cells share."""
-    n, interior = len(K[0]) // 2, space.element.interior_dofs
+def eliminate_interiors(space: Space, stiffness: Stiffness) -> Array:
+    """Eliminate the interior unknowns of every cell, (cells, 2 m, 2 m): the m functions that cells share are left."""
+    n, interior = len(space.cell_dofs) // 2, space.element.interior_dofs
     shared, own = slice(n - interior), slice(n - interior, n)
     inner, outer = 2 * interior, 2 * (n - interior)
-    reduced = np.empty((len(K), outer, outer))
-    for cell, left in zip(K.reshape(-1, 2, n, 2, n), reduced, strict=True):
-        done = cell[:, own][..., own].reshape(inner, inner)
-        left[:] = cell[:, shared][..., shared].reshape(outer, outer)
-        eliminate(done, cell[:, own][..., shared].reshape(inner, outer), left)
+    reduced = np.empty((space.mesh.nelements, outer, outer))
+    for numbers, K in stiffness():
+        for number, cell in zip(numbers, K.reshape(-1, 2, n, 2, n), strict=True):
+            done = cell[:, own][..., own].reshape(inner, inner)
+            reduced[number] = cell[:, shared][..., shared].reshape(outer, outer)
+            eliminate(done, cell[:, own][..., shared].reshape(inner, outer), reduced[number])
     return mirrored(reduced)
 
 
-def flexibility(space: Space, K: Array, exterior: Exterior, surface: Index) -> Array:
-    """Displacements (m, m) of the m unknowns on the surface of cells K under unit forces on each of them.
+def flexibility(space: Space, stiffness: Stiffness, exterior: Exterior, surface: Index) -> Array:
+    """Displacements (m, m) of the m unknowns on the surface under unit forces on each of them.
 
     Unknowns that the exterior couples, or that move more than one of the body's, are kept to the last with these.
     """
@@ -180,7 +189,7 @@ def flexibility(space: Space, K: Array, exterior: Exterior, surface: Index) -> A
     moving = row >= 0
     shared = np.delete(space.cell_dofs, space.inside, axis=0)
     unknowns, gathered = reduced_unknowns(shared, T)
-    cells = reduced_cells(eliminate_interiors(space, K), gathered)
+    cells = reduced_cells(eliminate_interiors(space, stiffness), gathered)
     last = np.diff(exterior.stiffness.indptr) > 0
     last[column[moving]] = True
     region = dissected(space.mesh, unknowns, last)

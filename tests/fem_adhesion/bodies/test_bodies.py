@@ -1,5 +1,7 @@
 """The hemisphere of finite elements: its shape, uniform states, and an elastic sphere in Legendre polynomials."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from facets import boundary_basis
@@ -30,7 +32,7 @@ def space(degree, *, finest=0.15, growth=2.0):
 
 def condensed(degree, poisson=0.3, grip="sliding", traction="projected", **mesh):
     body = space(degree, **mesh)
-    K = stiffness_of(body, [Elastic(poisson)])
+    K = partial(stiffness_of, body, [Elastic(poisson)])
     return condense(body, poisson, far_field=GRIPS[grip], stiffness=K, traction=traction)
 
 

@@ -37,7 +37,7 @@ def buried(space, poisson, stiffness=cell_stiffness):
         held[unknowns] = True
     axis = space.components[0, space.boundary_functions("axis")]
     u[axis], held[axis] = 0, True
-    K = scatter(stiffness(space, poisson), space.cell_dofs, space.unknowns).tocsr()
+    K = scatter(stiffness(Cells.of(space), poisson), space.cell_dofs, space.unknowns).tocsr()
     u[~held] = spsolve(K[~held][:, ~held].tocsc(), -K[~held] @ u)
     return u
 
