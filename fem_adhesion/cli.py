@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from fem_adhesion.assess.command import COMMAND as ASSESS
+from fem_adhesion.benchmark.command import COMMAND as BENCHMARK
 from fem_adhesion.common.files import NotWritten
 from fem_adhesion.common.jobs import keep_to_one_thread
 from fem_adhesion.common.options import BAD_INPUT, COMMAND, DISAGREE, NOT_WRITTEN, Parser, ended, ended_by_signal
@@ -20,7 +21,7 @@ from fem_adhesion.speed.command import COMMAND as SPEED
 from fem_adhesion.sweep.command import COMMAND as SWEEP
 from halfspace.errors import InputError, NotConverged
 
-COMMANDS = (COMPARE, CURVE, SWEEP, ASSESS, FINITE_SPHERE, SPEED, GREENWOOD, FORMULAS, REPORT)
+COMMANDS = (COMPARE, CURVE, SWEEP, ASSESS, FINITE_SPHERE, SPEED, GREENWOOD, FORMULAS, BENCHMARK, REPORT)
 
 STUDIES = ("PIL", "jinja2", "loky", "markupsafe", "matplotlib", "pint", "plotille", "rich")
 """Libraries of the extra that every command needs, the solvers none."""

@@ -91,7 +91,9 @@ class Truth:
                 spread[name] = abs(moved[name] - self.values[name]) / 100
         # Of a domain L what the load lacks falls as L^-4; L by the shift of the approach.
         part = 50 * (abs(compliance) / (SHAPE * self.tabor)) ** 4
-        spread |= {name: spread.get(name, 0.0) + part * abs(v) for name, v in self.values.items() if "landing" not in name}
+        spread |= {
+            name: spread.get(name, 0.0) + part * abs(v) for name, v in self.values.items() if "landing" not in name
+        }
         spread |= {name: math.inf for name in self.values if "landing" in name or "energy" in name}
         return {**self.values, **moved}, spread
 
@@ -127,9 +129,10 @@ def variants() -> Iterator[Variant]:
     for sign, word in ((1, "stiff"), (-1, "soft")):
         yield Variant("domain-too-small", f"{word} by (eps/R dgamma)", _domain(sign), (1e-6, 0.3))
     yield Variant("grid-too-coarse", "work of adhesion at a receding edge too large by the part", _coarse, (1e-6, 0.5))
-    for late in (True, False):
-        word = "after" if late else "before"
-        yield Variant("sampled-jumps", f"the row {word} the jump, steps of (eps)", _sampled(late), (1e-6, 1.0))
+    for late, word in ((True, "after"), (False, "before")):
+        for all_ in (True, False):
+            what = f"{'all events' if all_ else 'jumps alone'} from rows, the one {word} the jump, in steps of (eps)"
+            yield Variant("sampled-jumps", what, _sampled(late, all_), (1e-6, 1.0))
     for factor in FACTORS:
         yield Variant("factor-2-pi-r", f"loads times {factor:.4g}", _units(factor, 1.0))
     for first, last in ((0.75, 0.999), (1.5, 2.0)):
@@ -209,7 +212,7 @@ def _coarse(truth: Truth, part: float) -> Prediction:
     return values, size
 
 
-def _sampled(late: bool) -> Callable[[Truth, float], Prediction | None]:
+def _sampled(late: bool, all_: bool) -> Callable[[Truth, float], Prediction | None]:
     """Jumps on the rows beside them, half a step from where they are, give or take its other half."""
 
     def predict(truth: Truth, step: float) -> Prediction | None:
@@ -224,8 +227,9 @@ def _sampled(late: bool) -> Callable[[Truth, float], Prediction | None]:
         for name in truth.values:
             if "landing" in name or name.startswith("energy"):
                 spread[name] = 2 * step
-        spread["pull_off_load"] = step**2 / truth.tabor**2
-        spread |= {f"{name}_approach": step / math.sqrt(12) for name in ("pull_off", "zero_load")}
+        if all_:
+            spread["pull_off_load"] = step**2 / truth.tabor**2
+            spread |= {f"{name}_approach": step / math.sqrt(12) for name in ("pull_off", "zero_load")}
         return values, spread
 
     return predict

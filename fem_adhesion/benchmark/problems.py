@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from importlib.resources import files
 from typing import Any
 
@@ -35,7 +35,10 @@ USUAL = (
 RTOL = 1e-6  # asked of curves that the atlas does not have: a digit more than most codes give
 RADIUS, SPACING, WORK = 1e-6, 3e-10, 0.05  # m, m, J/m^2: a micrometre of silica or so, for numbers in SI
 STATES = {name: name for name in EVENTS} | {f"{jump}_landing": jump for jump in ("jump_on", "jump_off")}
-KINDS = {f"{state}_{kind}": kind for state in STATES for kind in OBSERVABLES} | {"energy": "energy", "energy_lost": "energy"}
+KINDS = {f"{state}_{kind}": kind for state in STATES for kind in OBSERVABLES} | {
+    "energy": "energy",
+    "energy_lost": "energy",
+}
 """Kind of each quantity, which has its unit, by its name."""
 
 
@@ -64,7 +67,9 @@ class Problem:
         if self.in_atlas:
             return by_atlas(self.scene.tabor)
         kept = json.loads(files(__package__).joinpath("data", "values.json").read_text(encoding="utf-8"))
-        return {name: Estimate(*value) for name, value in kept[self.name].items()} if self.name in kept else self.solved()
+        return (
+            {name: Estimate(*value) for name, value in kept[self.name].items()} if self.name in kept else self.solved()
+        )
 
     def solved(self) -> dict[str, Estimate]:
         """Our values, solved for."""
@@ -84,11 +89,14 @@ def named(name: str) -> Problem:
     head, numbers = (found[1], found[2].split("-")[1:]) if found else ("", [])
     kind = next((kind for kind in ("body", "law") if head in PARTS[kind] and head not in ("meshed", "tabulated")), "")
     if not found or not kind:
-        raise InputError(f"problem = {name!r}, limit: a body or law, its parameters and tabor; as {', '.join(USUAL[-5:])}")
+        raise InputError(
+            f"problem = {name!r}, limit: a body or law, its parameters and tabor; as {', '.join(USUAL[-5:])}"
+        )
     parts: dict[str, Any] = {kind: part_in(kind, f"{head}:{','.join(numbers)}")}
     return Problem(name, Scene(float(found[3]), **parts))
 
 
+@lru_cache(maxsize=1024)  # that a parameter is tried at, for several causes
 def by_atlas(tabor: float) -> dict[str, Estimate]:
     """Values of a paraboloid on the half-space under the 3-9 law; those that no curve at the Tabor parameter has left out."""
     on, off = atlas.jump_on(tabor), atlas.jump_off(tabor)

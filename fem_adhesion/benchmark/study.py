@@ -24,7 +24,7 @@ from halfspace.equilibrium.events import EVENTS, approach_scale
 from halfspace.values import Array, Estimate
 
 NOISE = np.geomspace(1e-9, 1e-2, 57)  # parts of a number by which a code may err: with more nothing is told
-PARTS = 120  # trial values of a parameter, in equal ratios; the best is refined
+STEP = 0.1  # of the logarithm of a parameter from trial to trial; the best is refined
 SURE = 7.0  # logarithm of the evidence by which a defect must beat sound numbers: chance finds a thousandth of that
 ALIKE = 3.0  # logarithm of the evidence within which two causes fit alike
 FITS = 4.0  # mean square of deviations in what is allowed up to which a cause fits
@@ -103,7 +103,12 @@ class Diagnosis:
             for row in self.rows
         ]
         named = {"cause": self.cause, "alike": list(self.causes[1:]), "remedy": REMEDIES[self.cause]}
-        return {**named, "runners_up": [fit for fit in fits if fit["cause"] not in self.causes][:3], "fits": fits, "rows": rows}
+        return {
+            **named,
+            "runners_up": [fit for fit in fits if fit["cause"] not in self.causes][:3],
+            "fits": fits,
+            "rows": rows,
+        }
 
 
 def diagnose(submitted: Sequence[Submitted]) -> Diagnosis:
@@ -173,7 +178,7 @@ def _fitted(variant: Variant, truth: Truth, rows: Sequence[Row]) -> Result | Non
         found = misfits(0.0)
         return (*_likelihood(*found, floor), math.nan) if found else None
     first, last = np.log(variant.ends)
-    trials = np.linspace(first, last, PARTS)
+    trials = np.linspace(first, last, math.ceil((last - first) / STEP) + 1)
     if misfits(trials[0]) is None or misfits(trials[-1]) is None:
         return None
 
@@ -182,7 +187,7 @@ def _fitted(variant: Variant, truth: Truth, rows: Sequence[Row]) -> Result | Non
         return -_likelihood(*found, floor)[0] if found else math.inf
 
     near = int(np.argmin([worse(trial) for trial in trials]))
-    ends = trials[max(near - 1, 0)], trials[min(near + 1, PARTS - 1)]
+    ends = trials[max(near - 1, 0)], trials[min(near + 1, trials.size - 1)]
     place = float(minimize_scalar(worse, bounds=ends, method="bounded", options={"xatol": 1e-10}).x)
     found, beside = misfits(place), misfits(place + 1e-6)
     if found is None or beside is None:

@@ -54,7 +54,9 @@ def read(path: Path) -> list[Submitted]:
     form = next((form for form in (NUMBERS, CURVES) if set(form) <= set(header)), None)
     if form is None or not rows:
         limit = f"a header {','.join(NUMBERS)} or {','.join(CURVES)} and rows below it"
-        raise InputError(f"{path} has the columns {','.join(header)} and {len(rows)} rows, limit: {limit}; see --problems")
+        raise InputError(
+            f"{path} has the columns {','.join(header)} and {len(rows)} rows, limit: {limit}; see --problems"
+        )
     grouped = dict[str, list[tuple[str, Mapping[str, str]]]]()
     for number, row in enumerate(rows, 2):
         where = f"{path}, row {number}"

@@ -1,0 +1,90 @@
+"""``fem-adhesion benchmark``: other people's numbers beside ours, and what is likely wrong with them."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, all_written, console_beside
+from fem_adhesion.common.scene_options import given, refuse
+from halfspace.errors import InputError
+
+
+def add_options(command: Parser) -> None:
+    """Add the options."""
+    columns = "CSV with the columns problem,quantity,value (unit, error if need be), or problem,approach,load of curves"
+    command.add_argument("submission", nargs="?", type=Path, help=columns, metavar="CSV")
+    sheets = "write sheets of problems, with our values, and templates into this directory instead"
+    command.add_argument("--problems", type=Path, help=sheets, metavar="DIR")
+    names = "of the sheets, as half-space-0.5 or layer-2-1; a dozen unless given"
+    command.add_argument("--names", nargs="+", help=names, metavar="NAME")
+    command.add_argument("--force", action="store_true", help="replace files in a directory that is not empty")
+    command.add_argument(
+        "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
+    )
+    command.add_argument("--plot", type=Path, help="also draw the deviations: png, svg or pdf", metavar="FILE")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compare a submission, or write the sheets.
+
+    Returns
+    -------
+    int
+        1 if the numbers are not sound, else 0.
+    """
+    if (options.submission is None) == (options.problems is None):
+        raise InputError(
+            "a CSV file and --problems, limit: one of both; give numbers to compare, or a directory for sheets"
+        )
+    if options.problems is not None:
+        return _write(options)
+    refuse(options, ("names",), "with --problems")
+    from fem_adhesion.benchmark import figure, terminal
+    from fem_adhesion.benchmark.study import diagnose
+    from fem_adhesion.benchmark.submission import read
+    from fem_adhesion.common import style
+    from fem_adhesion.common.facts import plain
+    from fem_adhesion.common.record import record
+
+    form = style.require_suffix(options.plot) if options.plot else ""
+    submitted = read(options.submission)
+    with all_written(json=options.json, plot=options.plot) as files:
+        found = diagnose(submitted)
+        if "json" in files:
+            head = record(submission=options.submission)
+            json.dump({**head, **{name: plain(part) for name, part in found.record.items()}}, files["json"], indent=1)
+        if "plot" in files:
+            style.write(lambda: figure.draw(found), files["plot"], form)
+        report = terminal.report(found)
+    console_beside(options.json).print(report)
+    return AGREE if found.cause == "sound" else DISAGREE
+
+
+def _write(options: argparse.Namespace) -> int:
+    from fem_adhesion.benchmark import problems, terminal
+    from fem_adhesion.common.files import directory_written_aside, writing
+    from fem_adhesion.common.numbers import counted
+
+    if unheeded := given(options, "json", "plot"):
+        raise InputError(f"{', '.join(unheeded)} would not be heeded, limit: with a CSV file; leave it out")
+    asked = [problems.named(name) for name in options.names or problems.USUAL]
+    for problem in asked:
+        _ = problem.values  # solved for before anything is written
+    with directory_written_aside(options.problems, force=options.force) as aside, writing(options.problems):
+        terminal.write(asked, aside)
+    print(f"sheets and templates of {counted(len(asked), 'problem')} written: {options.problems}")
+    return AGREE
+
+
+COMMAND = Command(
+    "benchmark",
+    "compare another code's numbers with ours and say what is likely wrong with them",
+    "A table of each number beside ours with its bar, and the cause that fits all deviations best, with those that fit "
+    "alike. Numbers in R dgamma, eps and beta, or in SI for the material of the problem's sheet. Exits with 1 if the "
+    "numbers are not sound.",
+    "their.csv --json out.json --plot out.png",
+    add_options,
+    run,
+)
