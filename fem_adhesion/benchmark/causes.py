@@ -26,7 +26,7 @@ Prediction = tuple[Values, Values]  # values and, of those that are left open, s
 REMEDIES: Mapping[str, str] = {
     "sound": "Nothing to mend; refine once more to see which digits stand.",
     "domain-too-small": "Enlarge the domain until the approaches stand still: they err as 1/L, the loads as L^-4.",
-    "grid-too-coarse": "Refine at the contact edge, to a spacing of 0.1 beta/tabor^2: the force ripples as the edge moves.",
+    "grid-too-coarse": "Refine at the contact edge, to 0.1 beta/tabor^2: the force ripples as the edge moves.",
     "sampled-jumps": "Solve for the jumps as folds, or halve the step of the approach until they stand still.",
     "factor-2-pi-r": "Integrate the pressure over rings, 2 pi r dr, and give the load in R dgamma.",
     "modulus-e-for-e-star": "Use E* = E/(1 - nu^2), of two bodies 1/E* = 1/E1* + 1/E2*, in the place of E.",
@@ -35,7 +35,7 @@ REMEDIES: Mapping[str, str] = {
     "displacement-for-approach": "Give alpha, by which undeformed surfaces a spacing eps apart are pressed together.",
     "load-control-tear-off": "Go on past the pull-off: under fixed grips the contact ends at the fold in approach.",
     "hertz-radius-in-jkr": "Solve for JKR's radius at the approach: Hertz's, a^2 = R alpha, leaves out the tension.",
-    "jkr-for-intermediate": "Use the solution at the Tabor parameter, or `fem-adhesion formulas`, in the place of JKR's limit.",
+    "jkr-for-intermediate": "Use the solution at the Tabor parameter, or `fem-adhesion formulas`; JKR is its limit.",
     "cannot-tell": "Give more quantities, of jumps and under no load too, at two Tabor parameters or more.",
 }
 """What to do by cause."""
@@ -145,26 +145,26 @@ def variants() -> Iterator[Variant]:
             yield Variant(cause, f"times {f:g} in the Tabor parameter", _material(f**by_tabor, 1.0, 1.0))
             yield Variant(cause, f"times {f:g} in the units of the results", _units(1 / f, f**-power))
             yield Variant(cause, f"times {f:g} in the unit of the loads", _units(1 / f, 1.0))
-    for what, change in APPROACHES.items():
-        yield Variant("displacement-for-approach", what, _instead(change))
+    for what, parts in APPROACHES.items():
+        yield Variant("displacement-for-approach", what, _instead(*parts))
     yield Variant("load-control-tear-off", "the pull-off given as the jump off", _torn)
     yield Variant("hertz-radius-in-jkr", "JKR's force with a^2 = R alpha", _musen)
     yield Variant("hertz-radius-in-jkr", "contact radii a^2 = R alpha", _hertz)
     yield Variant("jkr-for-intermediate", "JKR's closed forms", _jkr)
 
 
-APPROACHES: Mapping[str, Callable[[float, float, float], float]] = {
-    "of the other sign": lambda alpha, gap, mu: -alpha,
-    "from where surfaces touch, not a spacing before": lambda alpha, gap, mu: alpha - 1,
-    "distance of the undeformed surfaces": lambda alpha, gap, mu: 1 - alpha,
-    "central gap of the other sign": lambda alpha, gap, mu: -gap,
-    "central gap": lambda alpha, gap, mu: gap,
-    "central distance": lambda alpha, gap, mu: gap + 1,
-    "displacement of the surface": lambda alpha, gap, mu: alpha + gap,
-    "displacement of the surface, outwards": lambda alpha, gap, mu: -alpha - gap,
-    "in beta^2/R in the place of eps": lambda alpha, gap, mu: alpha / mu,
+APPROACHES: Mapping[str, tuple[float, float, float, float]] = {
+    "of the other sign": (0, -1, 0, 0),
+    "from where surfaces touch, not a spacing before": (-1, 1, 0, 0),
+    "distance of the undeformed surfaces": (1, -1, 0, 0),
+    "central gap of the other sign": (0, 0, 0, -1),
+    "central gap": (0, 0, 0, 1),
+    "central distance": (1, 0, 0, 1),
+    "displacement of the surface": (0, 1, 0, 1),
+    "displacement of the surface, outwards": (0, -1, 0, -1),
+    "in beta^2/R in the place of eps": (0, 0, 1, 0),
 }
-"""What is given in the place of the approach, from approach, central gap and Tabor parameter."""
+"""What is given for the approach: a sum of 1, the approach in eps and in beta^2/R, and the central gap, so often."""
 
 
 def _scaled(values: Values, load: float, radius: float) -> Values:
@@ -235,13 +235,12 @@ def _sampled(late: bool, all_: bool) -> Callable[[Truth, float], Prediction | No
     return predict
 
 
-def _instead(change: Callable[[float, float, float], float]) -> Callable[[Truth, float], Prediction]:
+def _instead(one: float, alpha: float, reduced: float, gap: float) -> Callable[[Truth, float], Prediction]:
     def predict(truth: Truth, _: float) -> Prediction:
         values = dict(truth.values)
-        for name in truth.values:
-            if name.endswith("_approach"):
-                gap = truth.values[name.replace("approach", "central_gap")]
-                values[name] = change(truth.values[name], gap, truth.tabor)
+        for name in filter(lambda name: name.endswith("_approach"), truth.values):
+            own, central = truth.values[name], truth.values[name.replace("approach", "central_gap")]
+            values[name] = one + (alpha + reduced / truth.tabor) * own + gap * central
         return values, {}
 
     return predict

@@ -6,13 +6,11 @@ half-space and the law the 3-9 law.
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from importlib.resources import files
 from typing import Any
 
 from fem_adhesion.common.words import part_in
@@ -30,7 +28,7 @@ from halfspace.values import Estimate, States
 NAMED = re.compile(r"([a-z][a-z-]*[a-z])((?:-[\d.]+)*)-([\d.]+)")
 USUAL = (
     *(f"half-space-{tabor:g}" for tabor in (0.1, 0.3, 0.5, 1, 2, 3, 5, 10)),
-    *("hemisphere-100-1", "layer-2-1", "dugdale-1-1", "morse-3-1"),
+    *("hemisphere-100-1", "layer-2-1", "dugdale-0.2-1", "morse-3-1"),
 )
 RTOL = 1e-6  # asked of curves that the atlas does not have: a digit more than most codes give
 RADIUS, SPACING, WORK = 1e-6, 3e-10, 0.05  # m, m, J/m^2: a micrometre of silica or so, for numbers in SI
@@ -66,13 +64,6 @@ class Problem:
         """Our value of each quantity that the curve has."""
         if self.in_atlas:
             return by_atlas(self.scene.tabor)
-        kept = json.loads(files(__package__).joinpath("data", "values.json").read_text(encoding="utf-8"))
-        return (
-            {name: Estimate(*value) for name, value in kept[self.name].items()} if self.name in kept else self.solved()
-        )
-
-    def solved(self) -> dict[str, Estimate]:
-        """Our values, solved for."""
         path = trace(self.scene, rtol=RTOL)
         found = {
             f"{name}_{kind}": event.estimate(kind)
@@ -98,7 +89,7 @@ def named(name: str) -> Problem:
 
 @lru_cache(maxsize=1024)  # that a parameter is tried at, for several causes
 def by_atlas(tabor: float) -> dict[str, Estimate]:
-    """Values of a paraboloid on the half-space under the 3-9 law; those that no curve at the Tabor parameter has left out."""
+    """Values of a paraboloid on the half-space under the 3-9 law; none of jumps that do not exist."""
     on, off = atlas.jump_on(tabor), atlas.jump_off(tabor)
     states = {"pull_off": atlas.pull_off(tabor), "zero_load": atlas.zero_load(tabor)}
     states |= {"jump_on": on.take_off, "jump_off": off.take_off}
@@ -120,4 +111,4 @@ def _known(values: Mapping[str, Estimate]) -> dict[str, Estimate]:
 def told(problem: Problem) -> str:
     """What is asked, in a sentence."""
     scene = problem.scene
-    return f"{scene.body.looks} under a rigid {words_of(scene.surface.profile)}, law {words_of(scene.law)}"
+    return f"{scene.body.looks} under a rigid {words_of(scene.shape)}, law {words_of(scene.law)}"

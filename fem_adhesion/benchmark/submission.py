@@ -137,11 +137,11 @@ def read_off(approach: Array, load: Array) -> list[Number]:
         off = int(np.argmax(drop))
         places |= {"jump_off": off, "jump_on": int(np.argmax(approach[: off + 1]))}
     else:
-        on, off = (rise[:turn], rise[turn:]) if turn < last else (rise, rise[:0])
-        if on.size and -on.min() > usual:
-            places["jump_on"] = int(np.argmin(on)) + 1
-        if off.size and off.max() > usual:
-            places["jump_off"] = turn + int(np.argmax(off)) + 1
+        inwards, outwards = (rise[:turn], rise[turn:]) if turn < last else (rise, rise[:0])
+        if inwards.size and -inwards.min() > usual:
+            places["jump_on"] = int(np.argmin(inwards)) + 1
+        if outwards.size and outwards.max() > usual:
+            places["jump_off"] = turn + int(np.argmax(outwards)) + 1
     for name, i in places.items():
         error = float(step[max(i - 1, 0) : i + 1].max(initial=0.0))
         found.append(Number(f"{name}_approach", float(approach[i]), 0.0, error))

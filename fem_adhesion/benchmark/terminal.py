@@ -11,13 +11,13 @@ from rich.text import Text
 
 from fem_adhesion.benchmark.causes import REMEDIES
 from fem_adhesion.benchmark.problems import KINDS, Problem, told
-from fem_adhesion.benchmark.study import Diagnosis, Fit
+from fem_adhesion.benchmark.study import Diagnosis, Fit, Row
 from fem_adhesion.benchmark.submission import CURVES, NUMBERS, units_told
 from fem_adhesion.common.numbers import listed, with_error
 from fem_adhesion.common.record import UNITS
 from fem_adhesion.common.terminal import Column, Fitted, Prose
 
-DIGITS = 10  # significant, at most, of our values
+DIGITS = 9  # significant, at most, of our values
 DEFINITIONS = """\
 Units: R is the equivalent radius, E* the contact modulus, dgamma the work of adhesion, eps the spacing at which the
 surfaces are in equilibrium, beta = (R^2 dgamma/E*)^(1/3); the Tabor parameter is (R dgamma^2/(E*^2 eps^3))^(1/3).
@@ -32,19 +32,11 @@ from far separation to zero approach in contact. energy_lost: in a cycle under f
 
 def report(found: Diagnosis) -> RenderableType:
     """Everything for the terminal."""
-    rows = found.rows
-    columns = [
-        Column("problem", [row.problem for row in rows], words=True),
-        Column("quantity", [row.number.quantity.replace("_", " ") for row in rows], words=True),
-        Column("theirs", [f"{row.number.value:.{DIGITS}g}" for row in rows]),
-        Column("ours", [with_error(row.ours, digits=DIGITS) if row.ours else "-" for row in rows]),
-        Column("deviation", [f"{row.deviation:.1e}" if row.ours else "-" for row in rows]),
-        Column("digits", [f"{row.digits:.1f}" if row.ours else "-" for row in rows]),
-        Column("verdict", [row.verdict for row in rows], words=True),
-    ]
-    styles = ["" if row.verdict == "agrees" else "yellow" for row in rows]
     return Group(
-        Fitted(columns, ["their numbers beside ours, in R dgamma, eps, beta"], styles=styles),
+        *(
+            _table(one.problem.name, [row for row in found.rows if row.problem == one.problem.name])
+            for one in found.submitted
+        ),
         Prose(
             "In brackets: error of our last digit. Deviation: of approaches and gaps in parts of eps and the range of "
             "all events, of others in parts of our value. A number agrees if it does within its last digit, the error "
@@ -53,6 +45,19 @@ def report(found: Diagnosis) -> RenderableType:
         Text(),
         *map(Prose, verdict(found)),
     )
+
+
+def _table(problem: str, rows: Sequence[Row]) -> Fitted:
+    columns = [
+        Column("quantity", [row.number.quantity.replace("_", " ") for row in rows], words=True),
+        Column("theirs", [f"{row.number.value:.{DIGITS}g}" for row in rows]),
+        Column("ours", [with_error(row.ours, digits=DIGITS) if row.ours else "-" for row in rows]),
+        Column("deviation", [f"{row.deviation:.1e}" if row.ours else "-" for row in rows]),
+        Column("digits", [f"{row.digits:.1f}" if row.ours else "-" for row in rows]),
+        Column("verdict", [row.verdict for row in rows], words=True),
+    ]
+    styles = ["" if row.verdict == "agrees" else "yellow" for row in rows]
+    return Fitted(columns, [f"{problem}: their numbers beside ours", "in R dgamma, eps, beta"], styles=styles)
 
 
 def verdict(found: Diagnosis) -> Iterator[str]:

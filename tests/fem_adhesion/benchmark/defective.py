@@ -1,0 +1,139 @@
+"""Codes with real defects: each computes for itself, none by the predictions of `fem_adhesion.benchmark.causes`.
+
+All give quantities in R dgamma, eps and beta, as their authors would.
+"""
+
+import math
+
+import numpy as np
+
+from fem_adhesion import Block, Scene, trace
+from halfspace import atlas
+from halfspace.elastic import compliance, grid
+from halfspace.laws import LENNARD_JONES
+from halfspace.scaling import Units, contact_modulus, equivalent_radius
+from halfspace.theories import closed_forms
+
+EVENTS = ("pull_off", "zero_load", "jump_on", "jump_off")
+KINDS = ("approach", "load", "contact_radius")
+
+
+def true(tabor):
+    """What the atlas has."""
+    on, off = atlas.jump_on(tabor).take_off, atlas.jump_off(tabor).take_off
+    states = dict(zip(EVENTS, (atlas.pull_off(tabor), atlas.zero_load(tabor), on, off), strict=True))
+    found = {f"{name}_{kind}": float(getattr(state, kind)) for name, state in states.items() for kind in KINDS}
+    return {name: value for name, value in found.items() if math.isfinite(value) and name != "zero_load_load"}
+
+
+def in_si(units):
+    """What a code with these ideas of R, E* and dgamma gives, in SI."""
+    sizes = {"approach": units.approach, "load": units.load, "contact_radius": units.length}
+    return {
+        name: value * next(s for kind, s in sizes.items() if name.endswith(kind))
+        for name, value in true(units.tabor).items()
+    }
+
+
+def material(tabor, young=1e9, poisson=0.3, gamma=0.03, radius=1e-6, *, equal=False):
+    """A contact of a Tabor parameter: its true `Units`, from R of one body, E, nu and gamma = dgamma/2."""
+    other = (radius, young, poisson) if equal else (math.inf, math.inf, 0.0)
+    R, E = equivalent_radius(radius, other[0]), contact_modulus(young, poisson, *other[1:])
+    return Units(R, E, 2 * gamma, math.cbrt(R * (2 * gamma / E) ** 2) / tabor)
+
+
+def reduced(values, units):
+    """SI into R dgamma, eps, beta."""
+    sizes = {"approach": units.approach, "load": units.load, "contact_radius": units.length}
+    return {name: value / next(s for kind, s in sizes.items() if name.endswith(kind)) for name, value in values.items()}
+
+
+def mistaken(tabor, *, modulus=1.0, work=1.0, radius=1.0):
+    """What a code computes in SI that takes E*, dgamma or R for so many times what it is."""
+    units = material(tabor)
+    wrong = Units(units.radius * radius, units.modulus * modulus, units.work_of_adhesion * work, units.spacing)
+    return reduced(in_si(wrong), units)
+
+
+def clamped(tabor, size):
+    """Finite elements on a block that is clamped at a radius in beta."""
+    events = trace(Scene(tabor, Block(radius=size, far_field="clamped")), rtol=1e-3).events
+    found = {f"{name}_{kind}": getattr(event, kind) for name, event in events.items() for kind in KINDS}
+    return {name: value for name, value in found.items() if name in true(tabor)}
+
+
+def coarse(tabor, spacing, extent=12.0):
+    """Bands of uniform pressure, equally wide, at a given central gap from step to step."""
+    body = compliance.bands(grid.uniform(extent, spacing))
+    r, C = body.radii, body.compliance
+    gaps = atlas.curve(tabor).states(400).central_gap
+    gaps = gaps[gaps < 6]
+    free, alpha, rows = tabor * (r**2 - r[0] ** 2) / 2, -gaps[0], []
+    H = free + gaps[0]
+    for gap in gaps:
+        H = H + (gap - H[0]) * np.exp(-((r / 2) ** 2))
+        H[0] = gap
+        for _ in range(100):
+            P = LENNARD_JONES.pressure(H, tabor)
+            F = H - free + alpha - tabor * C @ P
+            if np.abs(F).max() < 1e-9:
+                break
+            J = np.eye(r.size) - tabor * C * LENNARD_JONES.slope(H, tabor)
+            J[:, 0] = 1.0  # the approach in the place of the central gap
+            change = np.linalg.solve(J, -F)
+            change[0], toward = 0.0, change[0]
+            part = min(1.0, 0.3 / np.max(np.abs(change) / (H + 1)))
+            H, alpha = H + part * change, alpha + part * toward
+        else:
+            break
+        rows.append((alpha, body.weights @ P))
+    approach, load = np.array(rows).T
+    least, last = int(np.argmin(load)), int(np.flatnonzero(load < 0)[-1])
+    found = {"pull_off_load": load[least], "pull_off_approach": approach[least]}
+    if last + 1 < load.size:
+        found["zero_load_approach"] = np.interp(0.0, load[last : last + 2], approach[last : last + 2])
+    drop = np.maximum.accumulate(approach) - approach
+    if tabor > 0.7:
+        off = int(np.argmax(drop))
+        on = int(np.argmax(approach[: off + 1]))
+        found |= {"jump_on_approach": approach[on], "jump_on_load": load[on]}
+        found |= {"jump_off_approach": approach[off], "jump_off_load": load[off]}
+    return {name: float(value) for name, value in found.items()}
+
+
+def stepped(tabor, step, start=0.0):
+    """Curve under fixed grips, in and out, at steps of the approach: columns of approach and load."""
+    curve, on, off = atlas.curve(tabor), *(jump(tabor).take_off.approach for jump in (atlas.jump_on, atlas.jump_off))
+    inwards = np.arange(off - 1.0 - start, atlas.zero_load(tabor).approach + 0.3 * tabor, step)
+
+    def loads(approaches, fold):
+        return [float(curve.at(approach=a, branch="separated" if a < fold else "contact").load) for a in approaches]
+
+    outwards = inwards[::-1]
+    return np.array([[*inwards, *outwards], [*loads(inwards, on), *loads(outwards, off)]]).T
+
+
+def jkr(tabor):
+    """JKR's closed forms."""
+    states = {"pull_off": closed_forms.jkr_pull_off(tabor), "jump_off": closed_forms.jkr_jump_off(tabor)}
+    states["zero_load"] = closed_forms.jkr_zero_load(tabor)
+    return {f"{name}_{kind}": getattr(state, kind) for name, state in states.items() for kind in KINDS}
+
+
+def hertz_radius(tabor):
+    """MUSEN's: the force 4 a^3/3 - sqrt(8 pi a^3) of the overlap a^2, at its least and where it vanishes."""
+    a = np.linspace(1e-3, 4, 400_001)
+    W = 4 / 3 * a**3 - np.sqrt(8 * np.pi * a**3)
+    least, zero = int(np.argmin(W)), int(np.flatnonzero(W < 0)[-1])
+    found = {"pull_off_load": W[least], "pull_off_approach": tabor * a[least] ** 2, "pull_off_contact_radius": a[least]}
+    return found | {
+        "zero_load_approach": tabor * a[zero] ** 2,
+        "zero_load_contact_radius": a[zero],
+        "jump_off_approach": 0.0,
+    }
+
+
+def rounded(values, digits, noise=0.0, seed=0):
+    """Values as they are written: to so many digits, with noise of a part of each."""
+    rng = np.random.default_rng(seed)
+    return {name: f"{value * (1 + noise * rng.standard_normal()):.{digits - 1}e}" for name, value in values.items()}
