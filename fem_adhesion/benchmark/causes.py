@@ -71,9 +71,9 @@ class Truth:
 
     @cached_property
     def curve(self) -> Array:
-        """Approach and load (2, n) along the curve of the atlas."""
+        """Approach, load and contact radius (3, n) along the curve of the atlas."""
         states = atlas.curve(self.tabor).states(PLACES)
-        return np.array([states.approach, states.load])
+        return np.array([states.approach, states.load, states.contact_radius])
 
     def shifted(self, compliance: float) -> Prediction:
         """Values where the approach has a compliance less, by which a box yields less than a half-space."""
@@ -84,9 +84,10 @@ class Truth:
         }
         spread = {name: abs(moved[name] - self.values[name]) / 10 for name in moved}
         if self.problem.in_atlas and "jump_on_load" in self.values:
-            approach, load = self.curve
-            before, after = _folds(approach, load), _folds(approach - compliance * load, load)
-            for name in before.keys() & after.keys():
+            approach, load, radius = self.curve
+            before = _folds(approach, load, radius)
+            after = _folds(approach - compliance * load, load, radius)
+            for name in before.keys() & after.keys() & self.values.keys():
                 moved[name] = self.values[name] + after[name] - before[name]
                 spread[name] = abs(moved[name] - self.values[name]) / 100
         # Of a domain L what the load lacks falls as L^-4; L by the shift of the approach.
@@ -98,7 +99,7 @@ class Truth:
         return {**self.values, **moved}, spread
 
 
-def _folds(approach: Array, load: Array) -> Values:
+def _folds(approach: Array, load: Array, radius: Array) -> Values:
     """Folds of a curve between which the approach falls most; empty if it does not fall."""
     off = int(np.argmax(np.maximum.accumulate(approach) - approach))
     on = int(np.argmax(approach[: off + 1]))
@@ -109,8 +110,9 @@ def _folds(approach: Array, load: Array) -> Values:
         below, here, above = approach[i - 1 : i + 2]
         t = (below - above) / (below - 2 * here + above) / 2
         found[f"{name}_approach"] = float(here - (below - above) * t / 4)
-        found[f"{name}_load"] = float(load[i] + t * (load[i + 1] - load[i - 1]) / 2)
-    return found
+        for kind, along in (("load", load), ("contact_radius", radius)):
+            found[f"{name}_{kind}"] = float(along[i] + t * (along[i + 1] - along[i - 1]) / 2)
+    return {name: value for name, value in found.items() if not math.isnan(value)}  # no radius without contact
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ def draw(found: Diagnosis) -> Figure:
     style.dress(axes, "deviation, as a part", "", legend="below")
     axes.set_title(f"cause: {' or '.join(found.causes)}", fontsize=11)
     for one in curves[:1]:
-        theirs, (approach, load) = np.asarray(one.curve), Truth(one.problem).curve
+        theirs, (approach, load, _) = np.asarray(one.curve), Truth(one.problem).curve
         shown = (approach > theirs[:, 0].min() - 0.5) & (approach < theirs[:, 0].max() + 0.5)
         panels[1].plot(approach[shown], load[shown], color="0.6", linewidth=3, label="ours")
         panels[1].plot(*theirs.T, ".-", markersize=3, linewidth=0.8, color=style.BLUE, label=one.problem.name)

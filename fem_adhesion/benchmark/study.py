@@ -23,7 +23,7 @@ from fem_adhesion.common.record import UNITS
 from halfspace.equilibrium.events import EVENTS, approach_scale
 from halfspace.values import Array, Estimate
 
-NOISE = np.geomspace(1e-9, 1e-2, 57)  # parts of a number by which a code may err: with more nothing is told
+NOISE = np.geomspace(1e-9, 3e-3, 53)  # parts of a number by which a code may err: with more nothing is told
 STEP = 0.1  # of the logarithm of a parameter from trial to trial; the best is refined
 SURE = 7.0  # logarithm of the evidence by which a defect must beat sound numbers: chance finds a thousandth of that
 ALIKE = 3.0  # logarithm of the evidence within which two causes fit alike

@@ -71,7 +71,7 @@ def coarse(tabor, spacing, extent=12.0):
     free, alpha, rows = tabor * (r**2 - r[0] ** 2) / 2, -gaps[0], []
     H = free + gaps[0]
     for gap in gaps:
-        H = H + (gap - H[0]) * np.exp(-((r / 2) ** 2))
+        before, H = (H, alpha), H + (gap - H[0]) * np.exp(-((r / 2) ** 2))
         H[0] = gap
         for _ in range(100):
             P = LENNARD_JONES.pressure(H, tabor)
@@ -85,13 +85,13 @@ def coarse(tabor, spacing, extent=12.0):
             part = min(1.0, 0.3 / np.max(np.abs(change) / (H + 1)))
             H, alpha = H + part * change, alpha + part * toward
         else:
-            break
+            H, alpha = before  # the edge leaps from node to node: on to the next gap
+            continue
         rows.append((alpha, body.weights @ P))
     approach, load = np.array(rows).T
     least, last = int(np.argmin(load)), int(np.flatnonzero(load < 0)[-1])
-    found = {"pull_off_load": load[least], "pull_off_approach": approach[least]}
-    if last + 1 < load.size:
-        found["zero_load_approach"] = np.interp(0.0, load[last : last + 2], approach[last : last + 2])
+    zero = np.interp(0.0, load[last : last + 2], approach[last : last + 2])
+    found = {"pull_off_load": load[least], "pull_off_approach": approach[least], "zero_load_approach": zero}
     drop = np.maximum.accumulate(approach) - approach
     if tabor > 0.7:
         off = int(np.argmax(drop))
@@ -107,7 +107,11 @@ def stepped(tabor, step, start=0.0):
     inwards = np.arange(off - 1.0 - start, atlas.zero_load(tabor).approach + 0.3 * tabor, step)
 
     def loads(approaches, fold):
-        return [float(curve.at(approach=a, branch="separated" if a < fold else "contact").load) for a in approaches]
+        apart = approaches < fold
+        load = np.empty(approaches.size)
+        load[apart] = curve.at(approach=approaches[apart], branch="separated").load
+        load[~apart] = curve.at(approach=approaches[~apart], branch="contact").load
+        return load
 
     outwards = inwards[::-1]
     return np.array([[*inwards, *outwards], [*loads(inwards, on), *loads(outwards, off)]]).T

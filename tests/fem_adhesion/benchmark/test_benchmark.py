@@ -53,6 +53,7 @@ DEFECTS = [  # cause, tabor, what such a code gives, digits written
     ("grid-too-coarse", 1.2, lambda mu: defective.coarse(mu, 0.35), 4),
     ("grid-too-coarse", 2.2, lambda mu: defective.coarse(mu, 0.12), 5),
     ("grid-too-coarse", 1.7, lambda mu: defective.coarse(mu, 0.25), 8),
+    ("domain-too-small", 0.8, lambda mu: defective.clamped(mu, 80.0), 7),
     ("factor-2-pi-r", 0.2, lambda mu: scaled_loads(mu, 1 / (2 * math.pi)), 3),
     ("factor-2-pi-r", 6.0, lambda mu: scaled_loads(mu, 1 / math.pi), 7),
     ("modulus-e-for-e-star", 0.9, lambda mu: defective.mistaken(mu, modulus=1 - 0.3**2), 5),
