@@ -40,8 +40,9 @@ hard: $(VENV)/installed-dev ## attempt the hard cases and print how each ended (
 honesty: $(VENV)/installed-dev ## hold error estimates against the truth, by families of scenes (QUICK=1: a minute; SEED=n)
 	$(BIN)/python tests/estimates honesty $(if $(QUICK),--quick) $(if $(SEED),--seed $(SEED))
 
-atlas: $(VENV)/installed ## make the files of the atlas anew (five minutes; CHECK=n: compare them with n new curves instead)
+atlas: $(VENV)/installed ## make the files of the atlas anew (half an hour; CHECK=n: compare them with n new curves instead)
 	$(BIN)/python -m halfspace.atlas $(if $(CHECK),--check $(CHECK))
+	$(BIN)/python -m fem_adhesion.finite_sphere.atlas $(if $(CHECK),--check $(CHECK))
 
 docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs (QUICK=1: without the code and the search)
 	$(BIN)/python tests/project/docs.py $(or $(OUT),build/docs) $(if $(QUICK),--quick)

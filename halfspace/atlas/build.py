@@ -43,6 +43,7 @@ UNBORN = Estimate(1.0, 0.0)  # stands for the birth of a number that all curves 
 
 Numbers = Mapping[str, Estimate]
 Node = Callable[[float], Numbers]
+Key = TypeVar("Key")
 T = TypeVar("T")
 Entry = dict[str, Any]
 
@@ -62,27 +63,32 @@ def solved(tabor: float) -> dict[str, Estimate]:
     return {name: number for name, number in found.items() if not math.isnan(number.value)}
 
 
-class Store(Generic[T]):
+class Store(Generic[Key, T]):
     """What was solved for at some Tabor parameters, one line each in a file, so that an interrupted build goes on.
 
-    `solve` gives what is stored by name; `read` makes it of the numbers in the file.
+    `solve` gives what is stored by name; `read` makes it of the numbers in the file, and `key` what it is stored by.
     """
 
     def __init__(
-        self, file: Path, solve: Callable[[float], dict[str, T]], read: Callable[[Any], T], told: Callable[[str], None]
+        self,
+        file: Path,
+        solve: Callable[[Key], dict[str, T]],
+        read: Callable[[Any], T],
+        told: Callable[[str], None],
+        key: Callable[[Any], Key],
     ) -> None:
         self.file, self.solve, self.told = file, solve, told
         lines = map(json.loads, file.read_text().splitlines() if file.exists() else ())
-        self.known = {tabor: {name: read(numbers) for name, numbers in found.items()} for tabor, found in lines}
+        self.known = {key(at): {name: read(numbers) for name, numbers in found.items()} for at, found in lines}
 
-    def __call__(self, tabor: float) -> dict[str, T]:
+    def __call__(self, key: Key) -> dict[str, T]:
         """What there is at a Tabor parameter, solved for unless it is known."""
-        if tabor not in self.known:
-            self.known[tabor] = self.solve(tabor)
+        if key not in self.known:
+            self.known[key] = self.solve(key)
             with self.file.open("a") as lines:
-                lines.write(json.dumps([tabor, self.known[tabor]], default=_plain) + "\n")
-            self.told(f"{self.file.stem}: {len(self.known)}, the last at tabor {tabor:.4g}")
-        return self.known[tabor]
+                lines.write(json.dumps([key, self.known[key]], default=_plain) + "\n")
+            self.told(f"{self.file.stem}: {len(self.known)}, the last at tabor {np.ravel(np.array(key))[0]:.4g}")
+        return self.known[key]
 
 
 def _plain(value: Any) -> Any:
@@ -90,9 +96,9 @@ def _plain(value: Any) -> Any:
     return value.tolist() if isinstance(value, np.ndarray) else [value.value, value.error]
 
 
-def events_solved(directory: Path, told: Callable[[str], None]) -> Store[Estimate]:
+def events_solved(directory: Path, told: Callable[[str], None]) -> Store[float, Estimate]:
     """Store of the events of Tabor parameters."""
-    return Store(directory / "events.jsonl", solved, lambda pair: Estimate(*pair), told)
+    return Store(directory / "events.jsonl", solved, lambda pair: Estimate(*pair), told, float)
 
 
 def digest() -> str:

@@ -31,9 +31,9 @@ STEPS = 2.0**38  # units in the largest coefficient of a piece, which are stored
 States = Mapping[str, Array]
 
 
-def states_solved(directory: Path, gap: Series, told: Callable[[str], None]) -> Store[Array]:
+def states_solved(directory: Path, gap: Series, told: Callable[[str], None]) -> Store[float, Array]:
     """Store of states of curves, by the central gap under no load as it is in the atlas."""
-    return Store(directory / "curves.jsonl", lambda tabor: states(tabor, gap), np.array, told)
+    return Store(directory / "curves.jsonl", lambda tabor: states(tabor, gap), np.array, told, float)
 
 
 def states(tabor: float, gap: Series) -> dict[str, Array]:

@@ -253,7 +253,7 @@ def test_it_needs_numpy_alone():
 
 
 def test_the_files_are_small_and_packed():
-    files = [FILE, FILE.with_name("curves.npz")]
+    files = [FILE, FILE.with_name("curves.npz"), FILE.with_name("sphere.json")]
     assert sum(file.stat().st_size for file in files) < 300_000
     packed = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]["halfspace"]
     assert {*files} <= {file for pattern in packed for file in (ROOT / "halfspace").glob(pattern)}
@@ -281,7 +281,7 @@ def test_a_build_goes_on_from_the_nodes_that_are_solved(tmp_path):
         return {"load": Estimate(tabor, 0.5)}
 
     for _ in range(2):
-        node = build.Store(tmp_path / "nodes.jsonl", solve, lambda pair: Estimate(*pair), told.append)
+        node = build.Store(tmp_path / "nodes.jsonl", solve, lambda pair: Estimate(*pair), told.append, float)
         assert [node(tabor)["load"] for tabor in (0.1, 0.2, 0.1)] == [Estimate(one, 0.5) for one in (0.1, 0.2, 0.1)]
     assert solved == [0.1, 0.2]
     assert told == ["nodes: 1, the last at tabor 0.1", "nodes: 2, the last at tabor 0.2"]
