@@ -189,7 +189,7 @@ def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: SurfaceC
     return ElasticOperator(
         np.concatenate([operator.radii, coordinate.radius(x)[0]]),
         np.concatenate([operator.weights, 2 * np.pi * coordinate.ring(x)[0] * w]),
-        compliance,
         np.concatenate([operator.cells, coordinate.radius(lines[1:])[0]]),
         np.arange(q + more).reshape(-1, k),
+        compliance=compliance,
     )

@@ -217,4 +217,4 @@ def surface_operator(
     N, weights = surface.values, surface.weights(traction)
     C = (N @ (N @ flexibility).T).T * weights
     C -= exterior.rigid_compliance * weights
-    return ElasticOperator(surface.radii, weights, C, surface.ends, surface.facet_points)
+    return ElasticOperator(surface.radii, weights, surface.ends, surface.facet_points, compliance=C)

@@ -215,7 +215,7 @@ class ContactSurface(Valued):
         """Operator of a rigid body on the points, with the weights of the undeformed horizontal area."""
         points = self.points
         rigid = np.zeros(2 * points.radii.shape)
-        return ElasticOperator(points.radii, points.weights(), rigid, points.ends, points.facet_points)
+        return ElasticOperator(points.radii, points.weights(), points.ends, points.facet_points, compliance=rigid)
 
 
 def contact_surface(space: Space, exterior: Exterior, points: int) -> ContactSurface:

@@ -70,7 +70,8 @@ def resolution_for(scales: Scales, rtol: float, level: int = 0) -> Resolution:
     The first level above it has one more, the second two more than that, and so on.
     """
     nodes = max(math.ceil(2 - math.log10(rtol) - 1e-9), 5) + level * (level + 1) // 2
-    return Resolution(min(nodes, GRIDS.most_nodes), finest=0.6, growth=3.0, extent=GRIDS.extent * scales.widened)
+    shorter = 10.0 ** min(1 - nodes / GRIDS.most_nodes, 0.0)  # cells in the place of nodes that there cannot be
+    return Resolution(min(nodes, GRIDS.most_nodes), 0.6 * shorter, 1 + 2 * shorter, GRIDS.extent * scales.widened)
 
 
 def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution, ...]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 from scipy.linalg import eigh
@@ -51,6 +51,10 @@ class Operator(ABC):
         """Operator at a contact radius in beta."""
 
     @abstractmethod
+    def nodes(self, scale: float) -> SurfaceNodes:
+        """Nodes at a contact radius in beta, without the work that a compliance may take."""
+
+    @abstractmethod
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure, each (q,)."""
 
@@ -60,11 +64,8 @@ class Operator(ABC):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ElasticOperator(Valued, Operator):
-    """Elastic half of a contact problem, whatever body or method it comes from.
-
-    The surface is cut into rings, the `cells`; inside each, pressure, deflection and gap are
-    polynomials through the values at the cell's nodes. Dimensionless: lengths in beta, E* = 1.
+class SurfaceNodes(Valued):
+    """Nodes of a surface, cut into rings, the `cells`: in each, values are polynomials through those at its nodes.
 
     Attributes
     ----------
@@ -73,9 +74,6 @@ class ElasticOperator(Valued, Operator):
         `to_infinity`.
     weights : (q,) array
         Quadrature weights of the area element 2 pi u du: ``weights @ P`` is the load in R dgamma.
-    compliance : (q, q) array
-        Deflection into the body (positive when pressed) at the nodes is ``compliance @ P`` for nodal
-        pressures P, positive in compression.
     cells : (m + 1,) array
         Radii between which one interpolation polynomial holds, from 0 outwards.
     cell_nodes : (m, k) int array
@@ -87,15 +85,9 @@ class ElasticOperator(Valued, Operator):
 
     radii: Array
     weights: Array
-    compliance: Array
     cells: Array
     cell_nodes: Index
     coordinate: SurfaceCoordinate = FLAT
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of its compliance."""
-        return self.compliance.nbytes
 
     @property
     def extent(self) -> float:
@@ -107,53 +99,14 @@ class ElasticOperator(Valued, Operator):
         """Nodes past the extent, none where the surface law acts only up to it."""
         return np.flatnonzero(self.radii > self.extent)
 
-    @property
-    def finite(self) -> ElasticOperator:
-        """The operator without the nodes past its extent."""
-        inside = self.radii <= self.extent
-        compliance = self.compliance[np.ix_(inside, inside)]
-        of_these = self.radii[inside], self.weights[inside], compliance
-        return ElasticOperator(*of_these, self.cells, self.cell_nodes)
+    def scaled(self, factor: float) -> Self:
+        """Return the same blown up by a factor."""
+        return replace(self, radii=self.radii * factor, weights=self.weights * factor**2, cells=self.cells * factor)
 
-    def widened(self, nodes: int, reach: float) -> ElasticOperator:
-        """Return the body with other cells beyond its extent, see `to_infinity`."""
-        return to_infinity(self, nodes, reach)
-
-    @property
-    def edge_row(self) -> Array:
-        """Row that interpolates at the contact edge, which a grid that stands still has nowhere in particular."""
-        raise AttributeError("the grid does not follow the contact; use interpolation at its radius")
-
-    def at(self, scale: float) -> ElasticOperator:  # noqa: ARG002 (the same at every contact radius)
-        """Return the operator itself, whatever the contact radius."""
-        return self
-
-    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:  # noqa: ARG002
-        """Derivatives by the scale of radii, weights and deflection: zero."""
-        zero = np.zeros(self.radii.size)
-        return zero, zero, zero
-
-    @cached_property
-    def compliance_root(self) -> Array:
-        """L of `root`; the rank m falls short of q where the nodes outnumber the freedoms of the surface.
-
-        A node without weight bears no load, and its row is zero.
-        """
-        root = np.sqrt(self.weights)
-        balanced = self.compliance * (root[:, None] / np.where(root > 0, root, np.inf))
-        values, vectors = eigh((balanced + balanced.T) / 2)
-        kept = values > 1e-13 * values[-1]
-        return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
-
-    def scaled(self, factor: float) -> ElasticOperator:
-        """Return the operator of the same body blown up by `factor`: compliance is homogeneous of degree one."""
-        return ElasticOperator(
-            self.radii * factor,
-            self.weights * factor**2,
-            self.compliance * factor,
-            self.cells * factor,
-            self.cell_nodes,
-        )
+    def with_compliance(self, compliance: Array) -> ElasticOperator:
+        """Return the operator of a body that has these nodes."""
+        of_these = self.radii, self.weights, self.cells, self.cell_nodes, self.coordinate
+        return ElasticOperator(*of_these, compliance=compliance)
 
     def cell_of(self, radius: float) -> int:
         """Index of the cell that holds `radius`."""
@@ -240,6 +193,72 @@ class ElasticOperator(Valued, Operator):
         return barycentric(self._places[self.cell_nodes])
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class ElasticOperator(SurfaceNodes, Operator):
+    """Elastic half of a contact problem, whatever body or method it comes from.
+
+    Pressure, deflection and gap are known at the nodes of the surface. Dimensionless: lengths in beta, E* = 1.
+
+    Attributes
+    ----------
+    compliance : (q, q) array
+        Deflection into the body (positive when pressed) at the nodes is ``compliance @ P`` for nodal
+        pressures P, positive in compression.
+    """
+
+    compliance: Array = field(kw_only=True)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of its compliance."""
+        return self.compliance.nbytes
+
+    @property
+    def finite(self) -> ElasticOperator:
+        """The operator without the nodes past its extent."""
+        inside = self.radii <= self.extent
+        compliance = self.compliance[np.ix_(inside, inside)]
+        return replace(self, radii=self.radii[inside], weights=self.weights[inside], compliance=compliance)
+
+    def widened(self, nodes: int, reach: float) -> ElasticOperator:
+        """Return the body with other cells beyond its extent, see `to_infinity`."""
+        return to_infinity(self, nodes, reach)
+
+    @property
+    def edge_row(self) -> Array:
+        """Row that interpolates at the contact edge, which a grid that stands still has nowhere in particular."""
+        raise AttributeError("the grid does not follow the contact; use interpolation at its radius")
+
+    def at(self, scale: float) -> ElasticOperator:  # noqa: ARG002 (the same at every contact radius)
+        """Return the operator itself, whatever the contact radius."""
+        return self
+
+    def nodes(self, scale: float) -> SurfaceNodes:  # noqa: ARG002
+        """Return the operator itself: its nodes are the same at every contact radius."""
+        return self
+
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:  # noqa: ARG002
+        """Derivatives by the scale of radii, weights and deflection: zero."""
+        zero = np.zeros(self.radii.size)
+        return zero, zero, zero
+
+    @cached_property
+    def compliance_root(self) -> Array:
+        """L of `root`; the rank m falls short of q where the nodes outnumber the freedoms of the surface.
+
+        A node without weight bears no load, and its row is zero.
+        """
+        root = np.sqrt(self.weights)
+        balanced = self.compliance * (root[:, None] / np.where(root > 0, root, np.inf))
+        values, vectors = eigh((balanced + balanced.T) / 2)
+        kept = values > 1e-13 * values[-1]
+        return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
+
+    def scaled(self, factor: float) -> Self:
+        """Return the operator of the same body blown up by a factor: compliance is homogeneous of degree one."""
+        return replace(super().scaled(factor), compliance=self.compliance * factor)
+
+
 def barycentric(nodes: Array) -> Array:
     """Weights 1/prod (x_j - x_m), (..., k), of nodes (..., k)."""
     differences = nodes[..., :, None] - nodes[..., None, :] + np.eye(nodes.shape[-1])
@@ -298,9 +317,8 @@ def stacked_panels(lines: Array, nodes_per_panel: int, R: float = np.inf) -> lis
 def collocated(radii: Array, lengths: Array, compliance: Array, cells: Array) -> ElasticOperator:
     """Operator on Gauss's points of cells (m + 1,): radii and weights (m, k), and a compliance of their numbers."""
     q, number = radii.size, np.arange(radii.size).reshape(radii.shape)
-    return ElasticOperator(
-        radii.ravel(), (2 * np.pi * radii * lengths).ravel(), compliance.reshape(q, q), cells, number
-    )
+    weights = (2 * np.pi * radii * lengths).ravel()
+    return ElasticOperator(radii.ravel(), weights, cells, number, compliance=compliance.reshape(q, q))
 
 
 def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> ElasticOperator:
@@ -327,12 +345,11 @@ def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> El
     radii, weights = radii[order], weights[order]
     inward, own = deflection[: inner.radii.size], deflection[inner.radii.size :][order]
     outward = (inner.weights[:, None] * inward / weights).T
-    return ElasticOperator(
-        np.append(inner.radii, radii),
-        np.append(inner.weights, weights),
-        np.block([[inner.compliance, inward], [outward, own]]),
-        inner.cells,
-        inner.cell_nodes,
+    return replace(
+        inner,
+        radii=np.append(inner.radii, radii),
+        weights=np.append(inner.weights, weights),
+        compliance=np.block([[inner.compliance, inward], [outward, own]]),
     )
 
 
@@ -350,7 +367,7 @@ def triangles(nodes: Array) -> ElasticOperator:
     weights = np.zeros(nodes.size)
     weights[:-1] += np.pi / 3 * (b - a) * (2 * a + b)
     weights[1:] += np.pi / 3 * (b - a) * (a + 2 * b)
-    return ElasticOperator(nodes, weights, compliance, nodes, _neighbours(nodes.size))
+    return ElasticOperator(nodes, weights, nodes, _neighbours(nodes.size), compliance=compliance)
 
 
 def bands(edges: Array) -> ElasticOperator:
@@ -363,7 +380,7 @@ def bands(edges: Array) -> ElasticOperator:
     compliance = np.diff(band_deflection(middle[:, None], edges), axis=1)
     weights = np.pi * np.diff(edges**2)
     cells = np.concatenate([[0], middle[1:-1], edges[-1:]])
-    return ElasticOperator(middle, weights, compliance, cells, _neighbours(middle.size))
+    return ElasticOperator(middle, weights, cells, _neighbours(middle.size), compliance=compliance)
 
 
 def _neighbours(count: int) -> Index:

@@ -10,6 +10,7 @@ Simpson's rule.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -38,7 +39,7 @@ def extrapolated(make: Callable[[Array], ElasticOperator], lines: Array, parts: 
     weights = parts**2 * fine.weights
     weights[shared] -= coarse.weights
     compliance = fine.compliance + _between(coarse.radii, fine.radii) @ off / (parts**2 - 1)
-    return ElasticOperator(fine.radii, weights / (parts**2 - 1), compliance, fine.cells, fine.cell_nodes)
+    return replace(fine, weights=weights / (parts**2 - 1), compliance=compliance)
 
 
 def _between(nodes: Array, radii: Array) -> Array:

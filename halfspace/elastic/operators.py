@@ -14,7 +14,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from halfspace.elastic.compliance import ElasticOperator, Operator, barycentric, lagrange
+from halfspace.elastic.compliance import ElasticOperator, Operator, SurfaceNodes, barycentric, lagrange
 from halfspace.elastic.grid import SurfaceCoordinate, gauss_points
 from halfspace.values import Array, Index, Recent, Valued
 
@@ -46,6 +46,15 @@ class Homogeneous(Valued, Operator):
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
         return STORE.get(self, "at", partial(self.unit.scaled, scale), scale)
+
+    def nodes(self, scale: float) -> SurfaceNodes:
+        """Nodes at a contact radius in beta."""
+        return self._nodes.scaled(scale)
+
+    @cached_property
+    def _nodes(self) -> SurfaceNodes:
+        unit = self.unit
+        return SurfaceNodes(unit.radii, unit.weights, unit.cells, unit.cell_nodes)
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
@@ -199,24 +208,22 @@ class Interpolated(Valued, Operator):
         return self._first.interpolation(float(self.scales[0]))[0]
 
     @cached_property
-    def _first(self) -> ElasticOperator:
-        """Nodes and cells at the first scale, without a compliance."""
-        return self._on_cells(float(self.scales[0]), np.empty((0, 0)))
+    def _first(self) -> SurfaceNodes:
+        return self.nodes(float(self.scales[0]))
 
-    def _on_cells(self, scale: float, compliance: Array) -> ElasticOperator:
-        """Operator with a compliance on the cells at a scale."""
+    def nodes(self, scale: float) -> SurfaceNodes:
+        """Nodes at a contact radius in beta."""
         (radii, weights), _ = self._nodes(scale)
         ends = self.grid.coordinate.radius(self.grid.lines(scale))[0]
-        return ElasticOperator(radii, weights, compliance, ends, self.cell_nodes, self.grid.coordinate)
+        return SurfaceNodes(radii, weights, ends, self.cell_nodes, self.grid.coordinate)
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
         return STORE.get(self, "at", partial(self._made, scale), scale)
 
     def _made(self, scale: float) -> ElasticOperator:
-        (radii, weights), _ = self._nodes(scale)
-        kernel = self.kernel.at(self.grid.edge(scale), 0)
-        return self._on_cells(scale, kernel * (weights / np.maximum.outer(radii, radii)))
+        nodes, kernel = self.nodes(scale), self.kernel.at(self.grid.edge(scale), 0)
+        return nodes.with_compliance(kernel * (nodes.weights / np.maximum.outer(nodes.radii, nodes.radii)))
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""

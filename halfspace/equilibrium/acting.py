@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from halfspace.elastic.compliance import ElasticOperator, Operator
+from halfspace.elastic.compliance import Operator, SurfaceNodes
 from halfspace.laws import Law
 from halfspace.profiles import Surface
 from halfspace.roots import root
@@ -31,10 +31,15 @@ class Acting(Valued):
         """The state: gaps, approach and scale, (q + 2,)."""
         return np.frombuffer(self.state)
 
+    @cached_property
+    def body(self) -> SurfaceNodes:
+        """Nodes at its scale."""
+        return self.operator.nodes(float(self.x[-1]))
+
     @property
-    def body(self) -> ElasticOperator:
-        """Operator at its scale, which the operator keeps as long as there is room."""
-        return self.operator.at(float(self.x[-1]))
+    def compliance(self) -> Array:
+        """Compliance at its scale, which the operator keeps as long as there is room."""
+        return self.operator.at(float(self.x[-1])).compliance
 
     @cached_property
     def pressure(self) -> Array:
@@ -132,7 +137,7 @@ class Acting(Valued):
         return row
 
 
-def _edge(body: ElasticOperator, H: Array, edge: float) -> float:
+def _edge(body: SurfaceNodes, H: Array, edge: float) -> float:
     """Largest radius at which the gaps H are those of the edge, on a grid that stands still."""
     inside = np.flatnonzero(edge > H)
     if inside.size == 0 and not body.interpolation(0.0)[0] @ H <= edge:

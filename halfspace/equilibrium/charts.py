@@ -146,9 +146,9 @@ def _hand_over(segment: Segment, problem: Traceable, metric: Metric) -> Point | 
 def transfer(source: Traceable, x: Array, target: Traceable) -> Array:
     """Interpolate a state of one problem as a start for another: what of its gaps is smooth, see `Traceable.rough`."""
     surface, state, other = source.interface, source.surface_state(x), target.interface
-    alpha, body = state[-2], surface.operator_at(state)
+    alpha, body = state[-2], surface.nodes_at(state)
     scale = surface.contact_radius(state) if other.follows_contact else 1.0
-    radii = other.operator.at(scale).radii
+    radii = other.operator.nodes(scale).radii
     inside = radii < body.extent
     within, beyond = radii[inside], radii[~inside]
     gaps = np.empty(radii.size)
@@ -159,7 +159,7 @@ def transfer(source: Traceable, x: Array, target: Traceable) -> Array:
 
 def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:
     """Deflection in eps past the extent of the source's grid, by its infinite cell or else as under a point load."""
-    body = source.operator_at(x)
+    body = source.nodes_at(x)
     if body.beyond.size:
         return body.values_beyond(radii, source.deflection(x))
     return np.asarray(source.tabor * source.load(x) / (np.pi * radii))

@@ -120,12 +120,19 @@ class Located(Valued):
     """A root of a condition on one discretisation's path.
 
     The point has converged; the slope is the derivative along the path of what vanishes, to start a root finder from.
+    By so much arclength, `left`, the root is not known: that of a rate is where it vanishes but for rounding.
     """
 
     condition: Condition
     problem: Traceable
     point: Point
     slope: float
+    left: float = 0.0
+
+    @property
+    def rounding(self) -> Array:
+        """What rounding leaves of the observables, (4,)."""
+        return rounding(self.problem, self.point.x) + self.left * np.abs(self.point.rates)
 
 
 def rounding(problem: Traceable, x: Array) -> Array:
@@ -251,10 +258,10 @@ def _solved(
     problem: Traceable, condition: Condition, start: Array, metric: Metric, near: Point, reach: float
 ) -> Located | Unsolved:
     """Solve for a state that meets a condition from a start near a point, no farther from it than the reach."""
-    direction, slope = metric.weights * near.rates, None
+    direction, slope, left = metric.weights * near.rates, None, 0.0
     if condition.stationary:
         turn = newton.turning_point(problem, start, condition.weights, direction, reach)
-        solution, slope = (turn.solution, turn.slope) if turn else (turn, None)
+        solution, slope, left = (turn.solution, turn.slope, turn.left) if turn else (turn, None, 0.0)
     else:
         control = Control(condition.weights, condition.value)
         solution = newton.attempt(problem, start, control, tolerance=LOCATE.solved)
@@ -265,7 +272,7 @@ def _solved(
     point = make_point(problem, solution, metric, direction, near.arclength + step)
     if metric.distance(point, near) > reach or metric.along(near, point) <= 0:
         return Unsolved("the state found lies on another part of the path; take a smaller rtol")
-    return Located(condition, problem, point, condition.rate(point) if slope is None else slope)
+    return Located(condition, problem, point, condition.rate(point) if slope is None else slope, left)
 
 
 def part_way(problem: Traceable, a: Point, b: Point, part: float, metric: Metric) -> Point | Unsolved:

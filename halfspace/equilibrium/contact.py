@@ -22,7 +22,7 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
-from halfspace.elastic.compliance import ElasticOperator, Operator
+from halfspace.elastic.compliance import ElasticOperator, Operator, SurfaceNodes
 from halfspace.equilibrium.acting import Acting
 from halfspace.errors import ContactTooWide, GridTooCoarse
 from halfspace.laws import LENNARD_JONES, Law
@@ -106,11 +106,15 @@ class ContactProblem(Valued):
 
     def operator_at(self, x: Array) -> ElasticOperator:
         """Operator of a state."""
+        return self.operator.at(float(x[-1]))
+
+    def nodes_at(self, x: Array) -> SurfaceNodes:
+        """Nodes of a state."""
         return self._acting(x).body
 
     def undeformed(self, approach: float, scale: float = 1.0) -> Array:
         """State with the gaps of the undeformed surfaces, H = -alpha* + mu z(u), as a start for Newton's method."""
-        return np.concatenate([self.rough(self.operator.at(scale).radii, approach), [approach, scale]])
+        return np.concatenate([self.rough(self.operator.nodes(scale).radii, approach), [approach, scale]])
 
     def rough(self, radii: Array, approach: float) -> Array:
         """Gaps of the undeformed surfaces: they are as steep as the profile, the deflection is smooth."""
@@ -120,7 +124,7 @@ class ContactProblem(Valued):
         """Left-hand sides of the equilibrium (in eps) and scale equations, shape (q + 1,)."""
         here = self._acting(x)
         return appended(
-            here.deflection - self.tabor * (here.body.compliance @ here.pressure),
+            here.deflection - self.tabor * (here.compliance @ here.pressure),
             float(self.operator.edge_row @ x[:-2]) - self.law.edge_gap if self.follows_contact else float(x[-1]) - 1,
         )
 
@@ -131,7 +135,7 @@ class ContactProblem(Valued):
     def _bordered(self, x: Array, row: Array) -> Array:
         """Jacobian with a row below it, as Fortran has it: what is factorised need not be copied."""
         here, J = self._acting(x), np.zeros((x.size, x.size), order="F")
-        np.multiply(here.body.compliance, -self.tabor * here.slope, out=J[:-2, :-2])
+        np.multiply(here.compliance, -self.tabor * here.slope, out=J[:-2, :-2])
         np.einsum("ii->i", J)[:-2] += 1
         J[:-2, -2] = 1
         if self.follows_contact:
@@ -145,7 +149,7 @@ class ContactProblem(Valued):
     def along(self, x: Array, v: Array) -> Array:
         """Derivative of the residual along a direction of the state, without its matrix, shape (q + 1,)."""
         here, dH, ds = self._acting(x), v[:-2], v[-1]
-        change = dH + v[-2] - self.tabor * (here.body.compliance @ (here.slope * dH))
+        change = dH + v[-2] - self.tabor * (here.compliance @ (here.slope * dH))
         if self.follows_contact:
             return appended(change + here.rates[2] * ds, float(self.operator.edge_row @ dH))
         return appended(change, ds)
@@ -186,7 +190,7 @@ class ContactProblem(Valued):
 
     def radii(self, x: Array) -> Array:
         """Nodal radii in beta, shape (q,)."""
-        return self.operator_at(x).radii
+        return self.nodes_at(x).radii
 
     def deflection(self, x: Array) -> Array:
         """Of the nodes in eps, mu w = H + alpha* - mu z(u), shape (q,)."""
@@ -201,7 +205,7 @@ class ContactProblem(Valued):
 
     def beside_axis(self, x: Array) -> Array:
         """Radii in beta of the nodes in the inner half of the cell on the axis."""
-        body = self.operator_at(x)
+        body = self.nodes_at(x)
         nodes = body.cell_nodes[0]
         return np.asarray(body.radii[nodes[: (nodes.size + 1) // 2]])
 
@@ -211,7 +215,7 @@ class ContactProblem(Valued):
         By the polynomial through its nodes in the squares of their places, as the gap on the axis: one in the radii
         errs by far more between nodes than at them.
         """
-        body = self.operator_at(x)
+        body = self.nodes_at(x)
         return np.asarray(body.near_axis(radii) @ self.deflection(x)[body.cell_nodes[0]] - x[-2])
 
     def ripples(self, x: Array) -> Array:
@@ -224,7 +228,7 @@ class ContactProblem(Valued):
         root. On finite elements of degree p, with p + 2 nodes, the last is none of theirs. A straight line between two
         nodes does not tell of the radius: nan.
         """
-        body, radius = self.operator_at(x), self.contact_radius(x)
+        body, radius = self.nodes_at(x), self.contact_radius(x)
         gap = _left_out(self._coefficients(x, 0))
         if np.isnan(radius) or body.cell_nodes.shape[1] == 2:
             return np.array([gap, np.nan])
@@ -236,7 +240,7 @@ class ContactProblem(Valued):
 
     def _coefficients(self, x: Array, cell: int) -> Array:
         """Sizes of the Legendre coefficients of the deflection in a cell, whereas the profile is exact, in eps."""
-        body = self.operator_at(x)
+        body = self.nodes_at(x)
         nodes, (first, last) = body.cell_nodes[cell], body.cells[cell : cell + 2]
         places = 2 * (body.radii[nodes] - first) / (last - first) - 1
         deflection = x[nodes] - self.tabor * self.profile.height(body.radii[nodes])
@@ -260,7 +264,7 @@ class ContactProblem(Valued):
         grid still converges, to a pull-off force that is too large ([G97] 4b). GridTooCoarse tells the spacing, its
         place and the limit.
         """
-        radius, body = self.contact_radius(x), self.operator_at(x)
+        radius, body = self.contact_radius(x), self.nodes_at(x)
         if np.isnan(radius):
             return
         require_narrow(radius, self.operator.widest_radius)

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from halfspace.equilibrium.charts import metric_for
-from halfspace.equilibrium.conditions import ROUND_OFF, Located, rounding
+from halfspace.equilibrium.conditions import ROUND_OFF, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.values import Array, Estimate
 
@@ -206,7 +206,7 @@ def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Array:
     if rule.steps or (rule.along and best.condition.stationary):
         ways = slice(None) if rule.along else slice(1)
         changes += [apart for chain in chains for apart in _apart(chain, rule)[ways]]
-    errors = rule.remaining * np.max(changes, axis=0) + rounding(best.problem, best.point.x)
+    errors = rule.remaining * np.max(changes, axis=0) + best.rounding
     if rule.beyond:
         errors += rule.beyond * _by_load(best)
     if rule.along:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, final
@@ -24,7 +25,8 @@ class NewtonSettings:
     left: float = 1e-4  # of the tolerance: error left by the last step; the least of any step that is iterated for
     turns: int = 12  # steps towards a turning point
     astray: float = 0.01  # relative size of a step to the path, from where it cannot be told how the path goes
-    turned: float = 1e-7  # relative size of the last of them: what it leaves goes as its square
+    turned: float = 1e-9  # relative size of the last of them: what it leaves goes as its square
+    rounded: float = 1e-6  # of a last one that is no smaller than that before: rounding is up to 5e-7 of the state
     little: float = 1e-6  # relative size of a change by which a derivative is taken
 
 
@@ -239,10 +241,14 @@ def tangent(problem: Equilibrium, solution: Solution) -> Array:
 @final
 @dataclass(frozen=True, eq=False, repr=False)
 class Turn(Valued):
-    """A state at which a weighted sum of observables turns along the path, and how fast its rate changes there."""
+    """A state at which a weighted sum of observables turns along the path, and how fast its rate changes there.
+
+    The arclength `left` is what the last steps were along the path: where rounding ends them it is known no better.
+    """
 
     solution: Solution
     slope: float
+    left: float
 
 
 def turning_point(
@@ -255,7 +261,7 @@ def turning_point(
     nearby, and the reach the arclength by which a step may move along the path. Unsolved if there is no such state so
     near.
     """
-    x = start
+    x, last, before = start, math.inf, 0.0
     for iteration in range(1, NEWTON.turns + 1):
         here = _Tangent(problem, x, weights, direction)
         dx = -here.solver(appended(problem.residual(x), 0.0), NEWTON.left)  # towards the path, across it
@@ -271,9 +277,11 @@ def turning_point(
             break
         damping = problem.longest_step(x, dx)
         x = x + damping * dx
-        if near and damping == 1 and update < NEWTON.turned:
-            control = Control(direction, 0.0)
-            return Turn(Solution(x, problem.observables(x), iteration, update, control, here.solver), slope)
+        rounding = last / 2 < update < NEWTON.rounded
+        if near and damping == 1 and (update < NEWTON.turned or rounding):
+            solution = Solution(x, problem.observables(x), iteration, update, Control(direction, 0.0), here.solver)
+            return Turn(solution, slope, abs(step) + rounding * before)
+        last, before = update, abs(step) if near else 0.0
     return Unsolved("the path does not turn here; take a smaller rtol")
 
 
@@ -304,15 +312,25 @@ class _Tangent(Valued):
         return float(self.gradient @ self.tangent)
 
     def changes(self, v: Array) -> tuple[float, Array]:
-        """Changes of psi and t with a change v of the state: c' t - c B^-1 B' t and -B^-1 B' t, by a difference."""
+        """Changes of psi and t with a change v of the state: c' t - c B^-1 B' t and -B^-1 B' t, by central differences.
+
+        On a grid that stands still a sharp edge that moves makes both terms of c' t + c t' up to 1e6 times their sum. A
+        difference to one side left a hundred times the slope, and the steps crept: they ended 1e-9 of the approach off.
+        """
         size = self.problem.size(self.x, v)
         if not size:
             return 0.0, np.zeros_like(v)
         h, t = NEWTON.little / size, self.tangent
-        beside = self.x + h * v
-        bordered = appended(self.problem.along(beside, t), float(self.problem.gradient(beside, self.direction) @ t))
-        turned = -self.solver(bordered - _last(t.size), NEWTON.left) / h
-        own = (self.problem.gradient(beside, self.weights) - self.gradient) @ t / h
+
+        def rate(of: Callable[[Array], Array]) -> Array:
+            return np.asarray((of(self.x + h * v) - of(self.x - h * v)) / (2 * h))
+
+        along, across = (
+            rate(lambda x: self.problem.along(x, t)),
+            rate(lambda x: self.problem.gradient(x, self.direction)),
+        )
+        turned = -self.solver(appended(along, float(across @ t)), NEWTON.left)
+        own = rate(lambda x: self.problem.gradient(x, self.weights)) @ t
         return float(own + self.gradient @ turned), turned
 
 

@@ -300,7 +300,7 @@ def test_at_zero_stretch_the_equations_are_the_linear_ones():
     x = entered(problem)
     x = x + 0.01 * directions(problem, x)
     T, S = problem.held.exterior.reduction, problem.held.exterior.stiffness
-    K = scatter(cell_stiffness(space, 0.3), space.cell_dofs, space.unknowns)
+    K = scatter(cell_stiffness(Cells.of(space), 0.3), space.cell_dofs, space.unknowns)
     expected = T.T @ (K @ (T @ x[:-1])) + S @ x[:-1]
     pressed = problem.interface.operator.weights * problem.pressure(x)
     expected[problem.surface.unknowns] += pressed @ problem.surface.vertical

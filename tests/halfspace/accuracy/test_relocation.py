@@ -119,4 +119,4 @@ def _chain(condition, rates, values, near_axis=((0.0,), (0.0,))):
     )
     problem = SimpleNamespace(interface=interface, surface_state=lambda x: x)
     points = [SimpleNamespace(observables=v, rates=rates, x=number) for number, v in enumerate(values)]
-    return [SimpleNamespace(condition=condition, problem=problem, point=point) for point in points]
+    return [conditions.Located(condition, problem, point, 1.0) for point in points]
