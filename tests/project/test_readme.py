@@ -51,6 +51,7 @@ LINES = {
     "fem-adhesion speed --out speed --quick": "fem-adhesion speed --out speed --quick",
     "fem-adhesion greenwood --out greenwood": GREENWOOD,
     "fem-adhesion formulas --out formulas": "fem-adhesion formulas --out formulas",
+    "fem-adhesion benchmark --problems sheets": "fem-adhesion benchmark --problems sheets",
     f"{ASSESS} --plot silica.png": f"{ASSESS} --plot silica.png",
     "fem-adhesion finite-sphere --out sphere --quick": "fem-adhesion finite-sphere --out sphere --quick",
     "make hard": MAKE,
@@ -109,7 +110,7 @@ def test_a_command_of_the_readme_runs_to_its_end(line, whole):
     assert {file.relative_to(run.directory).parts[0] for file in left} == {*asked, *records}
 
 
-FILES = ("--plot", "--json", "--csv", "--vtk", "--render", "--movie", "--out")
+FILES = ("--plot", "--json", "--csv", "--vtk", "--render", "--movie", "--out", "--problems")
 
 
 def _open_json(file):
