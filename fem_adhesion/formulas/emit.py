@@ -42,6 +42,9 @@ def _words() -> dict[str, object]:
         variable = "v" if name in ("jump_on", "jump_off", "energy_lost") else "s"
         words |= {name: repr(tuple(value)), f"c_{name}": ", ".join(map(repr, value)), f"n_{name}": len(value)}
         words[f"sum_{name}"] = _sum(value, variable)
+    sphere = fits.CONSTANTS["sphere"]
+    words |= {f"s{i}": f"{c:g}" for i, c in enumerate(sphere)}
+    words |= {"sum_sphere_size": _sum(sphere[:3], "g"), "sum_sphere_grip": _sum(sphere[8:], "b")}
     flat = [
         [piece["from"], piece["to"], *piece["middle"], *piece["slope"], *chain(*piece["sums"])] for piece in fits.FORCE
     ]

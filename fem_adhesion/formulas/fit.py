@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from halfspace import atlas
+from halfspace.atlas import sphere
+from halfspace.limits import SMALLEST_SPHERE
 from halfspace.theories import fits
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF, ZERO_LOAD_RADIUS
 from halfspace.values import Array
@@ -21,6 +23,8 @@ ROUNDS = 400  # repetitions of a fit
 DIGITS = 6  # significant digits of a coefficient
 TABORS = np.geomspace(0.01, 300, 1500)
 FOLDED = atlas.birth_of_folds().value + np.geomspace(1e-3, 299.3, 1500)
+
+GRID = (24, 36, 9)  # points in tabor, R/eps and Poisson's ratio
 
 Columns = Callable[[Array], Array]
 
@@ -61,7 +65,20 @@ def constants() -> dict[str, Any]:
         scale = np.abs(exact) + offset
         A = (limit * (1 - v))[:, None] * np.vander(v, terms, increasing=True)
         found[name] = list(quotient(A, exact - offset - limit, lambda _: np.ones(1), scale))
+    found["sphere"] = list(of_spheres())
     return {name: rounded(value, DIGITS) if isinstance(value, list) else value for name, value in found.items()}
+
+
+def of_spheres() -> Array:
+    """Coefficients of the logarithm of the sphere's factor, fitted to points that are closer at the ends."""
+    share, ratio, nu = (
+        grid.ravel() for grid in np.meshgrid(*(np.sin(np.linspace(0, np.pi / 2, n)) ** 2 for n in GRID))
+    )
+    ratio = sphere.RATIOS[0] * (sphere.RATIOS[-1] / sphere.RATIOS[0]) ** ratio**2
+    most = np.minimum(sphere.TABORS[1], ratio / SMALLEST_SPHERE)
+    inputs = sphere.TABORS[0] * (most / sphere.TABORS[0]) ** share, ratio, sphere.POISSON[1] * nu
+    one = np.ones(len(nu))
+    return quotient(fits.sphere_terms(*inputs), np.log(sphere.pull_off(*inputs).load_ratio), lambda _: one, one)
 
 
 def quotient(A: Array, b: Array, below: Callable[[Array], Array], scale: Array) -> Array:

@@ -8,7 +8,11 @@ They serve any Tabor parameter mu, and all but `load` are exact in both limits, 
     jump_on_approach    2.7e-5 of |alpha*| + 1
     jump_off_approach   6.4e-4 of |alpha*|
     energy_lost         3.4e-4 of the energy
-    load                7.5e-3 of the pull-off load.
+    load                7.5e-3 of the pull-off load
+
+and for spheres within `halfspace.atlas.sphere`
+
+    sphere_factor       2.3e-3 of the factor.
 
 Loads in R dgamma, radii in beta, approaches in eps, energies in R dgamma eps. Jumps are under fixed grips, and nan
 below the birth of folds at mu = b. Coefficients are in ascending order.
@@ -26,6 +30,7 @@ from numpy.polynomial.chebyshev import chebval
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 
+from halfspace.limits import SMALLEST_SPHERE
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF, ZERO_LOAD_RADIUS
 from halfspace.values import Array
 
@@ -50,6 +55,29 @@ def pull_off_load(tabor: ArrayLike) -> Array:
         above + SOFTENING / (JKR_PULL_OFF - BRADLEY_PULL_OFF) * s**3 + s**4 * polyval(s, CONSTANTS["pull_off_below"])
     )
     return np.asarray(JKR_PULL_OFF + (BRADLEY_PULL_OFF - JKR_PULL_OFF) * above / below)
+
+
+def sphere_factor(tabor: ArrayLike, radius_ratio: ArrayLike, poisson: ArrayLike = 0.3) -> Array:
+    """Pull-off load of a hemisphere on a sliding mid-plane over the half-space's, at R/eps and Poisson's ratio.
+
+    For tabor from 0.05 to 10, R/eps from 5 to 1e5, R from 1.5 beta and Poisson's ratios from 0 to 0.49, else nan.
+    """
+    mu, rho, nu = np.broadcast_arrays(*(np.asarray(value, float) for value in (tabor, radius_ratio, poisson)))
+    inside = (mu >= 0.05) & (mu <= 10) & (rho >= 5) & (rho <= 1e5) & (nu >= 0) & (nu <= 0.49)
+    inside &= rho * (1 + 1e-12) >= SMALLEST_SPHERE * mu
+    return np.where(inside, np.exp(sphere_terms(mu, rho, nu) @ np.array(CONSTANTS["sphere"])), np.nan)
+
+
+def sphere_terms(tabor: ArrayLike, radius_ratio: ArrayLike, poisson: ArrayLike) -> Array:
+    """Terms (..., 11) of the factor's logarithm, in b = beta/R, e = eps/R, g = mu/(1 + mu), k = (1 - 2 nu)(1 - nu).
+
+    c0 b k g + c1 b k g^2 + c2 b k g^3, c3 e + c4 e g + c5 e^2, c6 b^2 + c7 b^2 k^2, nu^2 (c8 b^3 + c9 b^4 + c10 b^5).
+    """
+    mu, rho, nu = (np.asarray(value, float) for value in (tabor, radius_ratio, poisson))
+    b, e, g, k, n = np.sqrt(mu / rho), 1 / rho, mu / (1 + mu), (1 - 2 * nu) * (1 - nu), nu**2 * (mu / rho) ** 1.5
+    linear, square = b * k * g, b**2
+    terms = linear, linear * g, linear * g**2, e, e * g, e**2, square, square * k**2, n, n * b, n * square
+    return np.stack(terms, axis=-1)
 
 
 def zero_load_radius(tabor: ArrayLike) -> Array:

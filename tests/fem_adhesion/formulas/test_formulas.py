@@ -11,6 +11,7 @@ import pytest
 from fem_adhesion import cli
 from fem_adhesion.formulas import emit, fit, fit_force
 from halfspace import atlas
+from halfspace.atlas import sphere
 from halfspace.theories import closed_forms, fits
 
 BIRTH = atlas.birth_of_folds().value
@@ -113,7 +114,65 @@ def test_fortran_has_every_function_that_c_gives_it(made):
     """Where no compiler is, at least the names meet."""
     bound = set(re.findall(r"bind\(c, name='(\w+)'\)", (made / "adhesion.f90").read_text()))
     assert bound == set(re.findall(r"double (\w+)\(", (made / "adhesion.c").read_text()))
-    assert bound == {f"adhesion_{name}_f" for name in (*EXACT, "load", "force")}
+    assert bound == {f"adhesion_{name}_f" for name in (*EXACT, "sphere_factor", "load", "force")}
+
+
+@pytest.fixture(scope="module")
+def spheres():
+    """Tabor parameters, R/eps and Poisson's ratios (10,000, 3) within the atlas, and at its ends."""
+    random, count = np.random.default_rng(2), 10_000
+    ratio = np.exp(random.uniform(np.log(5), np.log(1e5), count))
+    ratio[::2] = random.uniform(5, 60, count // 2)
+    most = np.minimum(10, ratio / 2.25 * (1 - 1e-12))
+    tabor = 0.05 * (most / 0.05) ** random.random(count)
+    poisson = random.uniform(0, 0.49, count)
+    tabor[::10], poisson[1::10], poisson[2::10] = most[::10], 0.49, 0
+    return np.column_stack([tabor, ratio, poisson])
+
+
+MAIN = {
+    "adhesion.h": (
+        '#include <stdio.h>\n#include "adhesion.h"\nint main(void) { double a, b, c;'
+        ' while (scanf("%lf %lf %lf", &a, &b, &c) == 3) printf("%.17g\\n", adhesion_sphere_factor(a, b, c));'
+        " return 0; }\n"
+    ),
+    "adhesion.f90": (
+        "program main\nuse adhesion\nuse iso_c_binding\nreal(c_double) :: a, b, c\ninteger :: s\ndo\n"
+        "read (*, *, iostat=s) a, b, c\nif (s /= 0) exit\nprint '(es25.17)', adhesion_sphere_factor(a, b, c)\nend do\n"
+        "end program\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("language", ["python", *MAIN])
+def test_sphere_factor_is_as_close_as_it_says(python, made, tmp_path, spheres, language):
+    if language == "python":
+        found = np.array([python.sphere_factor(*row) for row in spheres.tolist()])
+    else:
+        by_c = language == "adhesion.h"
+        compiler = (
+            [_compiler("gcc"), "-std=c99", "-Wall", "-Werror", "-Wno-unused-function"]
+            if by_c
+            else [_compiler("gfortran")]
+        )
+        source = tmp_path / ("main.c" if by_c else "main.f90")
+        source.write_text(MAIN[language])
+        sources = [str(source)] if by_c else [str(made / "adhesion.c"), str(made / "adhesion.f90"), str(source)]
+        subprocess.run([*compiler, f"-I{made}", *sources, "-o", "main", "-lm"], check=True, cwd=tmp_path)
+        text = "\n".join(" ".join(map(repr, row)) for row in spheres.tolist())
+        out = subprocess.run([tmp_path / "main"], input=text + "\n", capture_output=True, text=True, check=True).stdout
+        found = np.array(out.split(), float)
+    np.testing.assert_allclose(found, fits.sphere_factor(*spheres.T), rtol=1e-12)
+    worst = np.max(np.abs(found / sphere.pull_off(*spheres.T).load_ratio - 1))
+    assert 0.5 * float(emit.worst_errors()["sphere_factor"]) < worst <= float(emit.worst_errors()["sphere_factor"])
+
+
+@pytest.mark.parametrize(
+    "inputs", [(0.04, 50.0, 0.3), (1.0, 2e5, 0.3), (1.0, 4.0, 0.3), (4.0, 8.9, 0.3), (1.0, 50.0, 0.5)]
+)
+def test_there_is_no_sphere_factor_outside(python, inputs):
+    assert np.isnan(python.sphere_factor(*inputs))
+    assert np.isnan(fits.sphere_factor(*inputs))
 
 
 @pytest.fixture(scope="module")
