@@ -26,7 +26,7 @@ def add_options(command: Parser) -> None:
 COMMAND = Command(
     "formulas",
     "write closed expressions for other codes, in Python, C, Fortran, Markdown and LaTeX",
-    "Pull-off load, also of spheres of finite radius, radius under no load, approaches of both jumps, the energy lost in "
+    "Pull-off load, and its factor for spheres, radius under no load, approaches of both jumps, the energy lost in "
     "a cycle and the load at an approach, down to tear-off, at any Tabor parameter, each with its worst error, and the "
     "conventions of six codes with functions that convert theirs.",
     "--out formulas",
