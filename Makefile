@@ -12,7 +12,7 @@ export PYTHONPYCACHEPREFIX ?= $(abspath $(VENV)/bytecode)
 endif
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help compare test check bench hard honesty atlas docs clean
+.PHONY: help compare test check bench hard honesty atlas peers docs clean
 
 # Targets share the environment that they install.
 .NOTPARALLEL:
@@ -43,6 +43,18 @@ honesty: $(VENV)/installed-dev ## hold error estimates against the truth, by fam
 atlas: $(VENV)/installed ## make the files of the atlas anew (half an hour; CHECK=n: compare them with n new curves instead)
 	$(BIN)/python -m halfspace.atlas $(if $(CHECK),--check $(CHECK))
 	$(BIN)/python -m fem_adhesion.finite_sphere.atlas $(if $(CHECK),--check $(CHECK))
+
+PEERS := adhesion
+peers: $(PEERS:%=build/peers/%/installed) $(VENV)/installed ## run other codes, each in an environment of its own, and grade them (some minutes)
+	rm -rf build/peers/runs
+	build/peers/adhesion/bin/python tests/peers/with_maugis.py build/peers/runs
+	set -e; for peer in $(PEERS); do OMP_NUM_THREADS=1 build/peers/$$peer/bin/python -W ignore tests/peers/with_$$peer.py build/peers/runs; done
+	$(BIN)/python tests/peers/table.py build/peers/runs tests/peers/peers.csv
+
+build/peers/%/installed: tests/peers/requirements/%.txt
+	$(PYTHON) -m venv $(@D)
+	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check --requirement $<
+	@touch $@
 
 docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs (QUICK=1: without the code and the search)
 	$(BIN)/python tests/project/docs.py $(or $(OUT),build/docs) $(if $(QUICK),--quick)

@@ -8,6 +8,7 @@ import csv
 import math
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 from scipy.optimize import brentq, minimize_scalar
@@ -39,21 +40,25 @@ def events(solve, problem, start, step):
         yield problem, "zero_load_central_gap", gap, "eps", ""
 
 
-def run(code, version, refinements, problems):
-    """Write NAME-REFINEMENT.csv of each refinement, with the seconds of CPU, into the directory given.
-
-    problems(tabor, **refinement) gives the problem's name and its `solve`.
-    """
+@contextmanager
+def record(code, version, refinement):
+    """Write the rows to CODE-REFINEMENT.csv in the directory given, and the seconds of CPU to runs.csv."""
     out = Path(sys.argv[1])
     out.mkdir(parents=True, exist_ok=True)
+    start, rows = time.process_time(), []
+    yield rows
+    seconds = time.process_time() - start
+    with (out / f"{code}-{refinement}.csv").open("w", newline="") as file:
+        csv.writer(file).writerows([COLUMNS, *rows])
+    with (out / "runs.csv").open("a", newline="") as file:
+        csv.writer(file).writerow((code, version, refinement, f"{seconds:.1f}"))
+    print(f"{code} {version} {refinement}: {seconds:.1f} s", flush=True)
+
+
+def run(code, version, refinements, problems):
+    """Record the events at each refinement; problems(tabor, **refinement) gives the problem's name and its `solve`."""
     for name, refinement in refinements.items():
-        start, rows = time.process_time(), []
-        for tabor in TABORS:
-            problem, solve = problems(tabor, **refinement)
-            rows += events(solve, problem, 0.25 + 2 * tabor, 0.3 + 0.2 * tabor)
-        seconds = time.process_time() - start
-        with (out / f"{code}-{name}.csv").open("w", newline="") as file:
-            csv.writer(file).writerows([COLUMNS, *rows])
-        with (out / "runs.csv").open("a", newline="") as file:
-            csv.writer(file).writerow((code, version, name, f"{seconds:.1f}"))
-        print(f"{code} {version} {name}: {seconds:.1f} s", flush=True)
+        with record(code, version, name) as rows:
+            for tabor in TABORS:
+                problem, solve = problems(tabor, **refinement)
+                rows += events(solve, problem, 0.25 + 2 * tabor, 0.3 + 0.2 * tabor)

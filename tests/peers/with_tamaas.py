@@ -25,7 +25,7 @@ def problem(tabor, law, points, width):
     solver.addFunctionalTerm(attraction)
     kept = model, surface, attraction  # the solver refers to them but does not keep them alive
 
-    def solve(approach, state):
+    def solve(approach, _):
         """Return no load where there is no convergence, as from the fold on: the surfaces have parted."""
         converged = solver.solve(-surface.mean() - approach) < 1e-8
         return converged * kept[0].traction.mean() * width**2 / tabor, np.nan, None

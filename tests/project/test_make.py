@@ -25,6 +25,7 @@ TARGETS = {
     "honesty": "make honesty QUICK=1 SEED=77",  # a new seed each time finds what is not known yet: no test's verdict
     "hard": HARD,  # test_hard reads what it writes
     "atlas": "make atlas CHECK=3",
+    "peers": "make --dry-run peers",  # it takes packages from an index, and minutes: test_peers reads what it wrote
     "docs": "make docs OUT=docs QUICK=1",
     "clean": "make clean",
 }
