@@ -1,4 +1,4 @@
-"""Make the finite sphere's part of the atlas, or check it: ``python -m fem_adhesion.finite_sphere.atlas``, 20 minutes.
+"""Make the finite sphere's part of the atlas, or check it: ``python -m fem_adhesion.finite_sphere.atlas``, 25 minutes.
 
 Polynomials of `halfspace.atlas.sphere` through events that `fem_adhesion.trace` solves for: on the edges of the domain,
 and at points spread evenly in the arc cosine of each place (an additive recurrence of the root of g^4 = g + 1). There
@@ -95,7 +95,8 @@ def edges(coefficients: Array) -> Iterator[Point]:
     for ratio, nu in product(*EDGES):
         birth = float(sphere.born(np.array(ratio), np.array(nu), coefficients))
         most = min(sphere.TABORS[1], ratio / SMALLEST_SPHERE * (1 - 1e-12))
-        for tabor in (sphere.TABORS[0], birth * (1 + sphere.PAST), (birth * most) ** 0.5, 0.8 * most, most):
+        least, past = sphere.TABORS[0], birth * (1 + sphere.PAST)
+        for tabor in (least, (least * birth) ** 0.5, past, (birth * most) ** 0.5, 0.8 * most, 0.9 * most, most):
             yield tabor, ratio, nu
 
 
