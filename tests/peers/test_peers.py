@@ -49,4 +49,5 @@ def test_each_number_of_a_peer_comes_nearer_to_ours_as_it_is_refined(code):
     for row in of(code):
         deviations[row["problem"], row["quantity"]].append(abs(float(row["deviation"])))
     for number, (first, *others) in deviations.items():
+        assert others[-1] < first, number
         assert min(others) < first / 2, number
