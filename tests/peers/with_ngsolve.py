@@ -87,7 +87,7 @@ def problem(tabor, cells, order, far):  # noqa: C901 (a problem and its solver s
         return False
 
     def solve(at, state):
-        """From the state of contact at a larger approach, in steps of a tenth; no load where the surfaces have parted."""
+        """From the state of contact at a larger approach, by tenths; no load where the surfaces have parted."""
         if state is None:
             overlap = at - tabor * x**2 / 2
             solution.Set(CF((0, IfPos(overlap, overlap, 0) / (1 + y) ** 2)))
