@@ -1,9 +1,11 @@
 """Atlas: all that depends on the Tabor parameter alone, for a paraboloid on a half-space under the 3-9 law.
 
 `series` (of one number), `events` (pull-off, zero load, jumps, energies), `curves` (whole curves) read what `build` and
-`build_curves` have made of traces: ``python -m halfspace.atlas``. To read it takes NumPy alone.
+`build_curves` have made of traces: ``python -m halfspace.atlas``. `sphere` has pull-off and jumps of elastic spheres, of
+which R/eps and Poisson's ratio tell as well. To read all that takes NumPy alone.
 """
 
+from halfspace.atlas import sphere
 from halfspace.atlas.curves import Curve, curve
 from halfspace.atlas.events import (
     Energy,
@@ -18,4 +20,4 @@ from halfspace.atlas.events import (
 )
 
 __all__ = ["Curve", "Energy", "Jump", "birth_of_folds", "curve", "energy_lost", "energy_released"]
-__all__ += ["jump_off", "jump_on", "pull_off", "zero_load"]
+__all__ += ["jump_off", "jump_on", "pull_off", "sphere", "zero_load"]
