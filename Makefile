@@ -44,7 +44,7 @@ atlas: $(VENV)/installed ## make the files of the atlas anew (half an hour; CHEC
 	$(BIN)/python -m halfspace.atlas $(if $(CHECK),--check $(CHECK))
 	$(BIN)/python -m fem_adhesion.finite_sphere.atlas $(if $(CHECK),--check $(CHECK))
 
-PEERS := adhesion tamaas
+PEERS := adhesion tamaas ngsolve
 peers: $(PEERS:%=build/peers/%/installed) $(VENV)/installed ## run other codes, each in an environment of its own, and grade them (some minutes)
 	rm -rf build/peers/runs
 	build/peers/adhesion/bin/python tests/peers/with_maugis.py build/peers/runs

@@ -55,10 +55,10 @@ def record(code, version, refinement):
     print(f"{code} {version} {refinement}: {seconds:.1f} s", flush=True)
 
 
-def run(code, version, refinements, problems):
+def run(code, version, refinements, problems, tabors=TABORS):
     """Record the events at each refinement; problems(tabor, **refinement) gives the problem's name and its `solve`."""
     for name, refinement in refinements.items():
         with record(code, version, name) as rows:
-            for tabor in TABORS:
+            for tabor in tabors:
                 problem, solve = problems(tabor, **refinement)
                 rows += events(solve, problem, 0.25 + 2 * tabor, 0.3 + 0.2 * tabor)

@@ -83,11 +83,11 @@ def problem(tabor, cells, order, far):  # noqa: C901 (a problem and its solver s
                 part /= 2
                 solution.vec.data = old - part * change
             if abs(size) < 1e-15 * abs(energy):
-                return True
-        return False
+                return
+        raise RuntimeError(f"no equilibrium at approach {approach.Get()}")
 
     def solve(at, state):
-        """From the state of contact at a larger approach, by tenths; no load where the surfaces have parted."""
+        """From the state of contact at a larger approach, in steps of a tenth."""
         if state is None:
             overlap = at - tabor * x**2 / 2
             solution.Set(CF((0, IfPos(overlap, overlap, 0) / (1 + y) ** 2)))
@@ -97,8 +97,7 @@ def problem(tabor, cells, order, far):  # noqa: C901 (a problem and its solver s
             before, solution.vec.FV().NumPy()[:] = state
             for next_one in np.linspace(before, at, 1 + int(np.ceil((before - at) / 0.1)))[1:]:
                 approach.Set(float(next_one))
-                if not newton():
-                    return 0.0, np.nan, state
+                newton()
         approach.Set(float(at))  # where no step was needed
         load = -Integrate(tension, mesh, BND, definedon=mesh.Boundaries("bottom"), order=4 * order)
         return load, top(mesh(0, 0, VOL_or_BND=BND)) - 1, (at, solution.vec.FV().NumPy().copy())
@@ -106,9 +105,8 @@ def problem(tabor, cells, order, far):  # noqa: C901 (a problem and its solver s
     return f"half-space-{tabor:g}", solve
 
 
-REFINEMENTS = {
-    f"{n}-{p}-{far:g}": {"cells": n, "order": p, "far": far}
-    for n, p, far in ((16, 2, 16.0), (16, 2, 8192.0), (24, 2, 8192.0))
-}
+REFINEMENTS = {f"{n}-{p}-{far:g}": {"cells": n, "order": p, "far": far} for n, p, far in ((8, 2, 16.0), (16, 2, 16.0))}
 if __name__ == "__main__":
-    run("ngsolve", version("ngsolve"), REFINEMENTS, problem)
+    run(
+        "ngsolve", version("ngsolve"), REFINEMENTS, problem, tabors=(0.5, 1.0)
+    )  # at 2 the Newton iteration written here fails on its way to pull-off
