@@ -1,8 +1,8 @@
 """Atlas: all that depends on the Tabor parameter alone, for a paraboloid on a half-space under the 3-9 law.
 
 `series` (of one number), `events` (pull-off, zero load, jumps, energies), `curves` (whole curves) read what `build` and
-`build_curves` have made of traces: ``python -m halfspace.atlas``. `sphere` has pull-off and jumps of elastic spheres, which
-depend on R/eps and Poisson's ratio as well. To read all that takes NumPy alone.
+`build_curves` have made of traces: ``python -m halfspace.atlas``. `sphere` has pull-off and jumps of elastic spheres,
+which depend on R/eps and Poisson's ratio as well. To read all that takes NumPy alone.
 """
 
 from halfspace.atlas import sphere
