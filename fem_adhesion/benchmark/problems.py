@@ -15,7 +15,7 @@ from typing import Any
 
 from fem_adhesion.common.words import part_in
 from fem_adhesion.convergence import trace
-from fem_adhesion.registry import PARTS, words_of
+from fem_adhesion.registry import PARTS
 from fem_adhesion.scene import HALF_SPACE, Scene
 from halfspace import atlas
 from halfspace.equilibrium.contact import OBSERVABLES
@@ -106,9 +106,3 @@ def _number(state: States, kind: str) -> Estimate:
 
 def _known(values: Mapping[str, Estimate]) -> dict[str, Estimate]:
     return {name: value for name, value in values.items() if not math.isnan(value.value)}
-
-
-def told(problem: Problem) -> str:
-    """What is asked, in a sentence."""
-    scene = problem.scene
-    return f"{scene.body.looks} under a rigid {words_of(scene.shape)}, law {words_of(scene.law)}"

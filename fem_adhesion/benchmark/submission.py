@@ -8,7 +8,6 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -146,14 +145,3 @@ def read_off(approach: Array, load: Array) -> list[Number]:
         error = float(step[max(i - 1, 0) : i + 1].max(initial=0.0))
         found.append(Number(f"{name}_approach", float(approach[i]), 0.0, error))
     return found
-
-
-def units_told(kind: str, problem: Problem) -> str:
-    """Units in which a kind of quantity may be given."""
-    size, name = problem.units.si(kind)
-    return f"{UNITS[kind]} = {size:.10g} {name}"
-
-
-def record(submitted: Submitted) -> dict[str, Any]:
-    """What was read, for JSON."""
-    return {number.quantity: number.value for number in submitted.numbers}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import csv
+import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -10,13 +10,15 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from fem_adhesion.benchmark.causes import REMEDIES
-from fem_adhesion.benchmark.problems import KINDS, Problem, told
+from fem_adhesion.benchmark.problems import KINDS, Problem
 from fem_adhesion.benchmark.study import Diagnosis, Fit, Row
-from fem_adhesion.benchmark.submission import CURVES, NUMBERS, units_told
+from fem_adhesion.benchmark.submission import CURVES, NUMBERS
 from fem_adhesion.common.numbers import listed, with_error
 from fem_adhesion.common.record import UNITS
 from fem_adhesion.common.terminal import Column, Fitted, Prose
+from fem_adhesion.registry import record_of, words_of
 
+SHOWN = ("approach", "load", "contact_radius", "energy")
 DIGITS = 9  # significant, at most, of our values
 DEFINITIONS = """\
 Units: R is the equivalent radius, E* the contact modulus, dgamma the work of adhesion, eps the spacing at which the
@@ -85,22 +87,21 @@ def _told(fit: Fit) -> str:
 def write(problems: Sequence[Problem], directory: Path) -> None:
     """Write a sheet and a template of numbers for each problem, and a template of a curve."""
     for problem in problems:
-        values, scene = problem.values, problem.scene
-        units, kinds = problem.units, dict.fromkeys(KINDS.values())
+        values, scene, units = problem.values, problem.scene, problem.units
+        sizes = [f"{UNITS[kind]} = {size:.10g} {si}" for kind in SHOWN for size, si in [units.si(kind)]]
         lines = [
             f"# {problem.name}",
-            f"A frictionless contact of a {told(problem)}; Tabor parameter {scene.tabor:g}.",
+            f"A frictionless contact of a rigid body and this one: Tabor parameter {scene.tabor:g}, profile "
+            f"{words_of(scene.shape)}, law {words_of(scene.law)}, body {json.dumps(record_of(scene.body))}.",
             DEFINITIONS,
-            "In SI: a material of this Tabor parameter has R = "
-            f"{units.radius:.10g} m, E* = {units.modulus:.10g} Pa, dgamma = {units.work_of_adhesion:g} J/m^2 and "
-            f"eps = {units.spacing:g} m; then {', '.join(units_told(kind, problem) for kind in kinds)}.",
+            f"Numbers in SI are read for R = {units.radius:.10g} m, E* = {units.modulus:.10g} Pa, "
+            f"dgamma = {units.work_of_adhesion:g} J/m^2: {', '.join(sizes)}.",
             "| quantity | value | error | unit |\n|---|---|---|---|",
         ]
         table = [f"| {n} | {v.value:.12g} | {v.error:.1g} | {UNITS[KINDS[n]]} |" for n, v in values.items()]
-        text = "\n\n".join(lines) + "\n" + "\n".join(table) + "\n"
-        (directory / f"{problem.name}.md").write_text(text, encoding="utf-8")
-        with (directory / f"{problem.name}.csv").open("w", encoding="utf-8", newline="") as file:
-            template = csv.writer(file, lineterminator="\n")
-            template.writerow([*NUMBERS, "unit", "error"])
-            template.writerows([problem.name, name, "", UNITS[KINDS[name]], ""] for name in values)
-    (directory / "curve.csv").write_text(f"{','.join(CURVES)}\n{problems[0].name},,\n", encoding="utf-8")
+        (directory / f"{problem.name}.md").write_text("\n\n".join(lines) + "\n" + "\n".join(table) + "\n", "utf-8")
+        template = [f"{problem.name},{name},,{UNITS[KINDS[name]]}," for name in values]
+        (directory / f"{problem.name}.csv").write_text(
+            "\n".join([",".join((*NUMBERS, "unit", "error")), *template, ""])
+        )
+    (directory / "curve.csv").write_text(f"{','.join(CURVES)}\n{problems[0].name},,\n")

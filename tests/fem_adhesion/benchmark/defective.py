@@ -107,7 +107,7 @@ def stepped(tabor, step, start=0.0):
     inwards = np.arange(off - 1.0 - start, atlas.zero_load(tabor).approach + 0.3 * tabor, step)
 
     def loads(approaches, fold):
-        apart = approaches < fold
+        apart = approaches < fold + 1e-9
         load = np.empty(approaches.size)
         load[apart] = curve.at(approach=approaches[apart], branch="separated").load
         load[~apart] = curve.at(approach=approaches[~apart], branch="contact").load
