@@ -35,6 +35,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "counter_modulus": MODULUS,
     "work_of_adhesion": ("J/m^2", "0.1J/m^2"),
     "stiffness": ("N/m", "0.2N/m"),
+    "force": ("N", "1nN"),
 }
 
 

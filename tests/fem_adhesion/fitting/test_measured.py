@@ -1,0 +1,160 @@
+"""Measured curves: read whatever their signs and units, prepared, and refused in one line."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fem_adhesion.fitting.measured import read
+from fem_adhesion.fitting.prepare import prepare
+from halfspace import atlas
+from halfspace.errors import InputError
+from halfspace.scaling import Units
+
+UNITS = Units(radius=100e-9, modulus=10e9, work_of_adhesion=0.05, spacing=0.3e-9)
+STIFFNESS = 10.0  # N/m
+FORCE = UNITS.radius * UNITS.work_of_adhesion
+IN_UNITS = STIFFNESS * UNITS.spacing / FORCE
+NOISE, CORRELATION = 2e-3 * FORCE, 0.6
+OFFSET, SLOPE = 3 * FORCE, 0.002 * FORCE / UNITS.spacing  # of the baseline, which the retract has a tenth higher
+ATLAS = atlas.curve(UNITS.tabor)
+FAR, NEAR = -400.0, 28.0  # travel of the base in eps
+
+
+def _loads(base, turn):
+    """Loads at bases on the contact branch beyond a turn, before it on the separated one and as 1/gap^2 beyond that."""
+    farthest = ATLAS.branches("base", stiffness=IN_UNITS)["separated"][0]
+    touching, far = base > turn, base < min(turn, farthest)
+    loads = np.empty(base.size)
+    for branch, here in (("contact", touching), ("separated", ~touching & ~far)):
+        loads[here] = ATLAS.at(base=base[here], stiffness=IN_UNITS, branch=branch).load
+    last = ATLAS.at(base=farthest, stiffness=IN_UNITS, branch="separated").load
+    loads[far] = last * (farthest / base[far]) ** 2
+    return loads
+
+
+def _made(points=1000, seed=5):
+    """Travel in m and force in N of an approach and of its retract."""
+    base = np.linspace(FAR, NEAR, points)
+    ranges = ATLAS.branches("base", stiffness=IN_UNITS)
+    loads = np.concatenate([_loads(base, ranges["separated"][1]), _loads(base, ranges["contact"][0])[::-1]])
+    white = np.random.default_rng(seed).normal(size=2 * points) * NOISE
+    for i in range(1, white.size):
+        white[i] = CORRELATION * white[i - 1] + math.sqrt(1 - CORRELATION**2) * white[i]
+    travel = np.concatenate([base, base[::-1]]) * UNITS.spacing
+    drift = np.repeat([1.0, 1.1], points) * OFFSET + SLOPE * travel
+    return travel, loads * FORCE + drift + white
+
+
+TRAVEL, LOADED = _made()
+SEGMENT = np.repeat(["approach", "retract"], TRAVEL.size // 2)
+
+
+def _write(path, columns):
+    lines = zip(*columns.values(), strict=True)
+    path.write_text("\n".join([",".join(columns), *(",".join(map(str, line)) for line in lines)]) + "\n")
+    return path
+
+
+@pytest.fixture
+def written(tmp_path):
+    return lambda **columns: _write(tmp_path / "curve.csv", columns)
+
+
+@pytest.fixture
+def plain(written):
+    return read(written(piezo_m=TRAVEL, force_N=LOADED, segment=SEGMENT))
+
+
+DIALECTS = {
+    "falling": ({"piezo_um": -TRAVEL * 1e6, "force_nN": LOADED * 1e9, "segment": SEGMENT}, {}),
+    "tension positive": ({"sensor_m": TRAVEL, "force_N": -LOADED, "segment": SEGMENT}, {}),
+    "without segments": ({"piezo_nm": TRAVEL * 1e9, "force_pN": LOADED * 1e12}, {}),
+    "deflection": ({"piezo_m": TRAVEL, "deflection_nm": LOADED / STIFFNESS * 1e9}, {"stiffness": STIFFNESS}),
+    "retract turned round": (
+        {
+            "piezo_m": np.r_[TRAVEL[:1000], TRAVEL[:999:-1]],
+            "force_N": np.r_[LOADED[:1000], LOADED[:999:-1]],
+            "segment": SEGMENT,
+        },
+        {},
+    ),
+    "with a pause": (
+        {
+            "piezo_m": np.insert(TRAVEL, 1000, [TRAVEL[1000]] * 80),
+            "force_N": np.insert(LOADED, 1000, [LOADED[1000]] * 80),
+            "segment": np.insert(SEGMENT.astype("<U9"), 1000, ["pause"] * 80),
+        },
+        {},
+    ),
+}
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_every_way_to_write_a_curve_reads_the_same(written, dialect):
+    columns, how = DIALECTS[dialect]
+    curve = read(written(**columns), **how)
+    assert curve.travel == pytest.approx(TRAVEL)
+    assert curve.force == pytest.approx(LOADED)
+    assert (curve.approach, curve.retract) == (slice(0, 1000), slice(1000, None))
+    assert curve.deflection_given == (dialect == "deflection")
+    assert bool(curve.told) == (dialect != "deflection" or "segment" not in columns)
+
+
+def test_a_turn_in_tension_is_no_compression(written):
+    kept = np.flatnonzero(LOADED[:1000] < OFFSET - 1 * FORCE)[-1]  # in contact after the jump, and pulled
+    whole = slice(kept, 2000 - kept)
+    travel, force = np.delete(TRAVEL, whole), np.delete(LOADED, whole)
+    assert read(written(piezo_m=travel, force_N=force)).force == pytest.approx(force)
+
+
+def test_preparing_finds_what_was_put_in(plain):
+    found, ranges = prepare(plain), ATLAS.branches("base", stiffness=IN_UNITS)
+    step, spacing = np.diff(TRAVEL)[0], UNITS.spacing
+    zero = atlas.zero_load(UNITS.tabor).approach
+    assert found.contact == pytest.approx(zero * spacing, abs=step)
+    assert found.jump_on.travel == pytest.approx(ranges["separated"][1] * spacing, abs=2 * step)
+    assert found.jump_off.travel == pytest.approx(ranges["contact"][0] * spacing, abs=2 * step)
+    assert found.noise == pytest.approx(NOISE, rel=0.2)
+    assert found.correlation == pytest.approx(CORRELATION, abs=0.1)
+    assert found.pull_off == pytest.approx(-atlas.pull_off(UNITS.tabor).load * FORCE, abs=STIFFNESS * step)
+    for name, factor in (("approach", 1.0), ("retract", 1.1)):
+        baseline = found.baseline[name]
+        assert baseline.offset == pytest.approx(factor * OFFSET + SLOPE * found.contact, abs=3 * NOISE)
+        assert baseline.slope == pytest.approx(SLOPE, rel=0.05)
+        assert baseline.curvature == 0
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_no_jump_is_found_in_noise_that_hides_it(written, seed):
+    hidden = LOADED + np.random.default_rng(seed).normal(size=LOADED.size) * FORCE
+    found = prepare(read(written(piezo_m=TRAVEL, force_N=hidden)))
+    assert found.jump_on is None
+
+
+APART = -15 * UNITS.spacing > TRAVEL
+CLOSE = -3 * UNITS.spacing < TRAVEL
+SATURATED = np.minimum(LOADED, np.quantile(LOADED, 0.99))
+REFUSED = {
+    "begin farther away": {"piezo_m": TRAVEL[CLOSE], "force_N": LOADED[CLOSE]},
+    "no contact": {"piezo_m": TRAVEL[APART], "force_N": LOADED[APART]},
+    "saturated": {"piezo_m": TRAVEL, "force_N": SATURATED},
+    "exchange them": {"piezo_m": TRAVEL, "force_N": LOADED, "segment": SEGMENT[::-1]},
+    "limit: one sign": {"piezo_m": TRAVEL, "force_N": np.r_[LOADED[:1000], -LOADED[1000:]]},
+    "one way only": {"piezo_m": TRAVEL[:1000], "force_N": LOADED[:1000]},
+    "0 segments called retract": {"piezo_m": TRAVEL[:1000], "force_N": LOADED[:1000], "segment": SEGMENT[:1000]},
+    "no unit": {"piezo_m": TRAVEL, "force": LOADED},
+    "unit of the wrong kind": {"piezo_m": TRAVEL, "force_V": LOADED},
+    "force_N and deflection_V": {"piezo_m": TRAVEL, "force_N": LOADED, "deflection_V": LOADED},
+    "give the stiffness": {"piezo_m": TRAVEL, "deflection_m": LOADED},
+    "give more points": {"piezo_m": TRAVEL[::30], "force_N": LOADED[::30]},
+    "line 12": {"piezo_m": TRAVEL, "force_N": np.where(np.arange(2000) == 10, np.nan, LOADED)},
+    "a travel": {"time_s": TRAVEL, "force_N": LOADED},
+}
+
+
+@pytest.mark.parametrize("words", REFUSED)
+def test_bad_input_is_refused_in_one_line(written, words):
+    with pytest.raises(InputError, match=words) as refused:
+        prepare(read(written(**REFUSED[words])))
+    assert "\n" not in str(refused.value)
