@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from fem_adhesion.common.numbers import counted, engineering, listed, parse
+from fem_adhesion.fitting import makers
 from halfspace.errors import InputError
 from halfspace.limits import require_positive
 from halfspace.values import Array, Valued
@@ -62,8 +63,10 @@ class ForceCurve(Valued):
     told: tuple[str, ...] = ()
 
 
-def read(path: Path, *, stiffness: float | None = None) -> ForceCurve:
-    """Read a curve from a CSV file whose header has the units.
+def read(
+    path: Path, *, stiffness: float | None = None, sensitivity: float | None = None, number: int = 0
+) -> ForceCurve:
+    """Read a curve from a CSV file whose header has the units, or from a file of a maker, see `makers`.
 
     The columns are ``sensor`` or ``piezo``, the travel of the base, or ``separation``, that of the tip, then ``force``
     or ``deflection``, each followed by ``_`` and its unit, and ``segment``: approach or retract, which is found by the
@@ -75,6 +78,10 @@ def read(path: Path, *, stiffness: float | None = None) -> ForceCurve:
         The file.
     stiffness : float, optional
         Spring constant in N/m, which turns a deflection into a force; that of the file unless given.
+    sensitivity : float, optional
+        Of the detector in m/V, where the file of a maker lacks it.
+    number : int
+        Which curve of a file of many, from 0.
 
     Raises
     ------
@@ -82,7 +89,14 @@ def read(path: Path, *, stiffness: float | None = None) -> ForceCurve:
         If the file cannot be read, lacks a unit, a segment or numbers, or has two columns for one thing; if a
         deflection comes without a stiffness; if the signs of its segments contradict each other.
     """
-    path, text = Path(path), _text(Path(path))
+    path = Path(path)
+    if makers.is_makers(path):
+        curves = makers.load(path, stiffness, sensitivity)
+        if not 0 <= number < len(curves):
+            raise InputError(f"curve {number} of {path}, limit: 0 to {len(curves) - 1}; take one of these")
+        taken = curves[number]
+        return curve_of(path, taken.values, taken.labels, stiffness=taken.stiffness)
+    text = _text(path)
     spring = SPRING.search(text)
     if stiffness is None and spring:
         stiffness = parse(spring[1].strip(), "stiffness")
@@ -101,6 +115,15 @@ def read(path: Path, *, stiffness: float | None = None) -> ForceCurve:
     }
     labels = [row[names.index("segment")].strip().lower() for row in rows] if "segment" in names else None
     return curve_of(path, values, labels, stiffness=stiffness, told=told)
+
+
+def count(path: Path, **given: float | None) -> int:
+    """Number of curves in a file; stiffness and sensitivity as for `read`."""
+    return (
+        len(makers.load(path, *(given.get(name) for name in ("stiffness", "sensitivity"))))
+        if makers.is_makers(path)
+        else 1
+    )
 
 
 def _text(path: Path) -> str:

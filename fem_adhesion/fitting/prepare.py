@@ -123,7 +123,8 @@ def prepare(curve: ForceCurve) -> Prepared:
         raise InputError(_no_contact("approach", above[curve.approach], BEYOND * noise))
     for name, way in ways.items():
         _require_flat(name, far[name], curve.travel[way], curve.force[way])
-    off = slice(curve.retract.start, above.size - far["retract"].end + SMEARED)
+    deepest = curve.retract.start + int(np.argmin(above[curve.retract]))
+    off = slice(max(deepest - SMEARED, curve.retract.start), above.size - far["retract"].end + SMEARED)
     return Prepared(
         curve,
         {name: _at(far[name].line, contact) for name in ways},
@@ -177,7 +178,8 @@ def _no_contact(name: str, above: Array, limit: float) -> str:
     """Say that the force stays on its baseline."""
     most, needed = (engineering(number, "N") for number in (float(np.abs(above).max()), limit))
     off = f"the force is at most {most} off its baseline, never {RUN} samples in a row by {needed}"
-    return f"no contact in the {name}: {off}, limit: {BEYOND:g} standard deviations; press until the force rises"
+    remedy = "press until the force rises, begin and end far apart"
+    return f"no contact in the {name}: {off}, limit: {BEYOND:g} standard deviations; {remedy}"
 
 
 def _line(travel: Array, force: Array) -> tuple[Polynomial, float]:
