@@ -48,16 +48,20 @@ def is_makers(path: Path) -> bool:
         raise InputError(f"{path} cannot be read ({error.strerror}); give a file of a force curve") from error
 
 
-@lru_cache(maxsize=1)  # a map is opened once, not once for each of its curves
 def load(path: Path, stiffness: float | None = None, sensitivity: float | None = None) -> Sequence[Columns]:
-    """Curves of a file. The stiffness in N/m takes the place of the file's, the sensitivity in m/V one it lacks.
+    """Curves of a file. The stiffness in N/m and the sensitivity in m/V take the place of those that it lacks.
 
     InputError if the library is not installed, the file cannot be read, or what it lacks is not given.
     """
     if not path.is_file():
         raise InputError(f"{path} is no file; give a file of a force curve")
+    return _loaded(path, path.stat().st_mtime_ns, stiffness, sensitivity)
+
+
+@lru_cache(maxsize=1)  # a map is opened once, not once for each of its curves
+def _loaded(path: Path, _changed: int, stiffness: float | None, sensitivity: float | None) -> Sequence[Columns]:
     if path.suffix.lower() in NANOSURF:
-        return _nanosurf(path, stiffness)
+        return _nanosurf(path)
     return _afmformats(path, stiffness, sensitivity)
 
 
@@ -90,7 +94,7 @@ def _afmformats(path: Path, stiffness: float | None, sensitivity: float | None) 
         except (Exception, library.errors.AFMFileFormatError) as error:  # of a damaged file its readers raise anything
             raise InputError(f"{path} cannot be read as {path.suffix} ({_why(error)}); save it as CSV") from error
 
-    return [_columns(path, curve, stiffness) for curve in tried()]
+    return [_columns(path, curve) for curve in tried()]
 
 
 def _why(error: BaseException) -> str:
@@ -98,7 +102,7 @@ def _why(error: BaseException) -> str:
     return str(error).partition("\n")[0] or type(error).__name__
 
 
-def _columns(path: Path, curve: Any, stiffness: float | None) -> Columns:
+def _columns(path: Path, curve: Any) -> Columns:
     """Columns of a curve of afmformats; where it knows of one segment alone, it is divided at the largest force."""
     travel = next((name for name in TRAVELS if name in curve.columns), None)
     if travel is None or "force" not in curve.columns:
@@ -107,13 +111,11 @@ def _columns(path: Path, curve: Any, stiffness: float | None) -> Columns:
     if np.ptp(segment) == 0:
         segment = np.arange(force.size) > np.argmax(force)
     names = {segment[0]: "approach", segment[-1]: "retract"}
-    own = curve.metadata.get("spring constant")
-    force = force * (stiffness / own if stiffness and own else 1.0)
     values = {TRAVELS[travel]: np.asarray(curve[travel], float), "force": force}
-    return Columns(values, [names.get(each, "pause") for each in segment], stiffness or own)
+    return Columns(values, [names.get(each, "pause") for each in segment], curve.metadata.get("spring constant"))
 
 
-def _nanosurf(path: Path, stiffness: float | None) -> Sequence[Columns]:
+def _nanosurf(path: Path) -> Sequence[Columns]:
     """Curves of a spectroscopy by NSFopen: forces in N, or deflections in m, which take a stiffness."""
     reader = _library("NSFopen.read", "nanosurf").read
     try:
@@ -131,11 +133,10 @@ def _nanosurf(path: Path, stiffness: float | None) -> Sequence[Columns]:
         has = listed([f"{name} in {unit}" for name, unit in units.items()])
         raise InputError(f"{path} has {has}, limit: Z-Axis in m and Deflection in N or m; calibrate the deflection")
     own = float(spring["Value"]) if spring["Unit"] == "N/m" else None
-    scale = stiffness / own if stiffness and own and given == "force" else 1.0
     found = []
     for number in range(len(sides[0][channel])):
         heights, pulls = ([np.asarray(side[name][number], float) for side in sides] for name in (channel, "Deflection"))
         labels = ["approach"] * heights[0].size + ["retract"] * heights[1].size
-        values = {travel[channel]: np.concatenate(heights), given: np.concatenate(pulls) * scale}
-        found.append(Columns(values, labels, stiffness or own))
+        values = {travel[channel]: np.concatenate(heights), given: np.concatenate(pulls)}
+        found.append(Columns(values, labels, own))
     return found

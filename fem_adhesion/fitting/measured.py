@@ -46,7 +46,7 @@ class ForceCurve(Valued):
     approach, retract : slice
         Parts of the arrays.
     deflection_given : bool
-        Whether the force is a deflection times the stiffness, so that it scales with stiffness and sensitivity.
+        Whether the force is known as a deflection times the stiffness, so that it scales with that.
     stiffness : float or None
         Spring constant in N/m that the file names or the user gave.
     told : tuple of str
@@ -77,7 +77,8 @@ def read(
     path : Path
         The file.
     stiffness : float, optional
-        Spring constant in N/m, which turns a deflection into a force; that of the file unless given.
+        Spring constant in N/m, by which a deflection or a force whose file names its own becomes a force; that of the
+        file unless given.
     sensitivity : float, optional
         Of the detector in m/V, where the file of a maker lacks it.
     number : int
@@ -95,11 +96,10 @@ def read(
         if not 0 <= number < len(curves):
             raise InputError(f"curve {number} of {path}, limit: 0 to {len(curves) - 1}; take one of these")
         taken = curves[number]
-        return curve_of(path, taken.values, taken.labels, stiffness=taken.stiffness)
+        return curve_of(path, taken.values, taken.labels, stiffness=stiffness, own=taken.stiffness)
     text = _text(path)
     spring = SPRING.search(text)
-    if stiffness is None and spring:
-        stiffness = parse(spring[1].strip(), "stiffness")
+    own = parse(spring[1].strip(), "stiffness") if spring else None
     lines = [(at, line) for at, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     if len(lines) < 2 * FEWEST:
         raise InputError(f"{path} has {counted(len(lines), 'line')} of data, limit: {2 * FEWEST}; give more points")
@@ -109,21 +109,20 @@ def read(
     columns, told = _columns(path, names)
     wanted = [names.index(name) for name in columns.values()]
     rows = list(csv.reader((line for _, line in lines[1:]), delimiter=delimiter))
+    for (at, _), row in zip(lines[1:], rows, strict=True):
+        if len(row) != len(names):
+            raise InputError(f"{path}, line {at} has {counted(len(row), 'column')}, limit: {len(names)}; mend it")
     numbers = np.array([_row(path, at, row, wanted) for (at, _), row in zip(lines[1:], rows, strict=True)])
     values = {
         what: column * _unit(path, what, name) for (what, name), column in zip(columns.items(), numbers.T, strict=True)
     }
     labels = [row[names.index("segment")].strip().lower() for row in rows] if "segment" in names else None
-    return curve_of(path, values, labels, stiffness=stiffness, told=told)
+    return curve_of(path, values, labels, stiffness=stiffness, own=own, told=told)
 
 
-def count(path: Path, **given: float | None) -> int:
-    """Number of curves in a file; stiffness and sensitivity as for `read`."""
-    return (
-        len(makers.load(path, *(given.get(name) for name in ("stiffness", "sensitivity"))))
-        if makers.is_makers(path)
-        else 1
-    )
+def count(path: Path, *, stiffness: float | None = None, sensitivity: float | None = None) -> int:
+    """Number of curves in a file; the arguments as for `read`."""
+    return len(makers.load(path, stiffness, sensitivity)) if makers.is_makers(path) else 1
 
 
 def _text(path: Path) -> str:
@@ -167,7 +166,7 @@ def _row(path: Path, at: int, row: Sequence[str], wanted: Sequence[int]) -> list
     """Numbers of a line that are used."""
     try:
         numbers = [float(row[column]) for column in wanted]
-    except (ValueError, IndexError) as error:
+    except ValueError as error:
         raise InputError(f"{path}, line {at}: {','.join(row)[:60]}, limit: a number in each column; mend it") from error
     if not np.isfinite(numbers).all():
         raise InputError(f"{path}, line {at}: {','.join(row)[:60]}, limit: finite numbers; leave the line out")
@@ -180,18 +179,24 @@ def curve_of(
     labels: Sequence[str] | None = None,
     *,
     stiffness: float | None = None,
+    own: float | None = None,
     told: tuple[str, ...] = (),
 ) -> ForceCurve:
     """Curve of columns in SI, named as in `TRAVELS` and "force" or "deflection", with labels of segments if known.
+
+    `own` is the spring constant in N/m by which the forces were computed from deflections, where that is known.
 
     The signs are found: the approach goes towards the sample, and its last force is a compression unless the retract
     goes on in its direction, as after a turn in tension.
     """
     (what, travel), (given, force) = values.items()
+    used = own if stiffness is None else require_positive(stiffness, "stiffness", "give it in N/m", "N/m")
     if given == "deflection":
-        if stiffness is None:
+        if used is None:
             raise InputError(f"{path} has a deflection and no stiffness, limit: both; give the stiffness, as 0.2N/m")
-        force = force * require_positive(stiffness, "stiffness", "give it in N/m", "N/m")
+        force = force * used
+    elif used and own:
+        force = force * (used / own)
     parts, notes = _segments(path, travel, labels)
     (x, y), (back, pull) = ((travel[part], force[part]) for part in parts)
     fewest = min(x.size, back.size)
@@ -208,7 +213,7 @@ def curve_of(
         notes = (*notes, f"The {given} was negative in compression and was turned round.")
     joined = way * np.concatenate([x, back]), sign * np.concatenate([y, pull])
     cut = slice(0, x.size), slice(x.size, None)
-    return ForceCurve(TRAVELS[what], *joined, *cut, given == "deflection", stiffness, (*told, *notes))
+    return ForceCurve(TRAVELS[what], *joined, *cut, given == "deflection" or own is not None, used, (*told, *notes))
 
 
 def _segments(path: Path, travel: Array, labels: Sequence[str] | None) -> tuple[tuple[slice, slice], tuple[str, ...]]:

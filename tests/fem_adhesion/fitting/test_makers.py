@@ -16,7 +16,7 @@ DATA = Path(__file__).parents[2] / "data" / "afm"
 
 @pytest.fixture(autouse=True)
 def _opened_anew():
-    makers.load.cache_clear()
+    makers._loaded.cache_clear()
 
 
 @pytest.mark.parametrize(
