@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside
-from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, material_of, refuse
+from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, inputs_of, refuse
 
 if TYPE_CHECKING:
-    from fem_adhesion.common.contact import Contact
+    from fem_adhesion.common.contact import Inputs
 
 
 def add_options(command: Parser) -> None:
@@ -39,11 +39,11 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.assess.study import assess
     from fem_adhesion.common import style
 
-    contact = _contact(options)
+    inputs = _inputs(options)
     form = style.require_suffix(options.plot) if options.plot else ""
     with all_written(json=options.json, plot=options.plot) as files:
         with progress_bar() as step:
-            assessment = assess(contact, step)
+            assessment = assess(inputs.contact(), step, inputs)
         if "json" in files:
             json.dump(terminal.record(assessment), files["json"], indent=1, allow_nan=False)
         if "plot" in files:
@@ -53,8 +53,8 @@ def run(options: argparse.Namespace) -> int:
     return AGREE
 
 
-def _contact(options: argparse.Namespace) -> Contact:
-    """The contact, with nothing given that would not be heeded."""
+def _inputs(options: argparse.Namespace) -> Inputs:
+    """What the contact is made of, with nothing given that would not be heeded."""
     from fem_adhesion.assess.settings import USUAL
     from fem_adhesion.assess.study import require_known
 
@@ -62,14 +62,15 @@ def _contact(options: argparse.Namespace) -> Contact:
         refuse(options, ("foundation",), "with --thickness")
     else:
         refuse(options, ("grip", *COUNTER), "without --thickness, as a thin sample meets a rigid sphere")
-    contact = material_of(options, grip=options.grip or "sliding", foundation=options.foundation or "bonded")
+    inputs = inputs_of(options, grip=options.grip or "sliding", foundation=options.foundation or "bonded")
+    contact = inputs.contact()
     require_known(contact)
     tabor = contact.units.tabor
     if tabor > USUAL.finite:
         refuse(
             options, ("grip",), f"tabor <= {USUAL.finite:g}, where a finite sphere is solved, and this is {tabor:.4g}"
         )
-    return contact
+    return inputs
 
 
 COMMAND = Command(

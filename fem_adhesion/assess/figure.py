@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fem_adhesion.assess.predictions import Prediction
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.theories import loop
@@ -38,9 +39,9 @@ def draw(assessment: Assessment) -> Figure:
 
     figure, (axes,) = style.panels(height=5.4)
     theory = next(m for m in assessment.theories if m.model == "JKR")
-    axes.plot(*scaled(*_line(theory.curve, assessment)), label="JKR", **BEHIND)
+    axes.plot(*scaled(*_line(theory, assessment)), label="JKR", **BEHIND)
     for model, look in zip(filter(None, (assessment.half_space, assessment.finite)), LINES, strict=False):
-        axes.plot(*scaled(*_line(model.curve, assessment)), label=model.model, **look)
+        axes.plot(*scaled(*_line(model, assessment)), label=model.model, **look)
     right = separations[1] * 10.0**-metres
     for tail, head in _jumps(assessment):
         # A jump along its load line, to the edge of the frame if it lands beyond.
@@ -69,7 +70,7 @@ def _frame(assessment: Assessment) -> tuple[Ends, Ends]:
     """Separations in m and forces in N that are shown: from a little compression to beyond the jump on."""
     units, values = assessment.contact.units, assessment.half_space.values
     force, jump = values["pull_off_force"].value, values.get("jump_on_separation")
-    approach, load = _line(assessment.half_space.curve, assessment)
+    approach, load = _line(assessment.half_space, assessment)
     near = 1 - float(np.nanmax(approach[load * units.load < USUAL.higher * force]))
     parted = 1 - float(np.nanmin(approach[load * units.load < -0.3 * force]))  # the neck may be long
     far = USUAL.wider * max(jump.value / units.approach if jump else 6.0, parted)
@@ -77,8 +78,9 @@ def _frame(assessment: Assessment) -> tuple[Ends, Ends]:
     return (first, far * units.approach), (-1.12 * force, USUAL.higher * force)
 
 
-def _line(curve: EquilibriumPath | Array | None, assessment: Assessment) -> tuple[Array, Array]:
-    """Approach and load along a curve, smooth between computed points."""
+def _line(model: Prediction, assessment: Assessment) -> tuple[Array, Array]:
+    """Approach and load along a model's curve, smooth between computed points."""
+    curve = model.curve
     if isinstance(curve, EquilibriumPath):
         path = reaching(curve, assessment.contact.reduced_stiffness)
         line, pull_off = smooth(path), path.events["pull_off"]
@@ -88,6 +90,8 @@ def _line(curve: EquilibriumPath | Array | None, assessment: Assessment) -> tupl
     if curve is None:
         return np.empty(0), np.empty(0)
     approach, load, radius = curve
+    if model.source == "atlas":
+        return approach, load
     touching = int(np.argmax(np.isfinite(radius)))  # where the curve may leap
     load = np.where(np.arange(load.size) == touching, np.nan, load)
     kept = np.arange(touching % USUAL.thinned, load.size, USUAL.thinned)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Literal
+
+import numpy as np
 
 from fem_adhesion.assess import theories
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.theories import estimated, loop
+from halfspace import atlas
 from halfspace.elastic.layers import Layers
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
@@ -67,18 +71,15 @@ class Prediction:
     they overlap; ``jump_on_base`` and ``jump_off_base`` the position in m of its base, positive towards the wall, zero
     where the undeformed surfaces would be one spacing apart with the cantilever straight. ``energy_lost`` in J is that
     of a cycle of approach and separation. By state of a computed curve or of its jumps, `missed` are the numbers that
-    are less accurate than was asked.
+    are less accurate than was asked. The source says whether a solver computed them for this contact, or they are read
+    from the atlas, or off a closed theory, which has a contact radius of its own.
     """
 
     model: str
     values: Mapping[str, Quantity]
     curve: EquilibriumPath | Array | None = field(default=None, repr=False, compare=False)
     missed: Mapping[str, Sequence[str]] = field(default_factory=dict)
-
-    @property
-    def is_computed(self) -> bool:
-        """Whether a solver has computed it, rather than a closed theory, which has a contact radius of its own."""
-        return isinstance(self.curve, EquilibriumPath)
+    source: Literal["solver", "atlas", "theory"] = "theory"
 
     @property
     def warning(self) -> str:
@@ -105,7 +106,48 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
             found |= _take_off(name, at.estimate("approach"), at.estimate("load"), stiffness)
         found["energy_lost"] = round_trip.energy_lost
     missed = path.missed | (round_trip.missed if round_trip else {})
-    return Prediction(model, _in_si(found, units), path, missed)
+    return Prediction(model, _in_si(found, units), path, missed, "solver")
+
+
+def on_atlas(model: str, tabor: float, stiffness: float, units: Units) -> Prediction:
+    """Read the half-space from the atlas, 0.01 <= tabor <= 300, and its curve as samples."""
+    (values,) = read_atlas([tabor], [stiffness], [units])
+    return Prediction(model, values, theories.half_space(tabor, stiffness), source="atlas")
+
+
+def read_atlas(
+    tabors: Sequence[float], stiffnesses: Sequence[float], units: Sequence[Units], number: int = USUAL.sampled
+) -> Iterator[dict[str, Quantity]]:
+    """Numbers of the half-space by the atlas: its series, and for a cantilever so many samples of its curve.
+
+    The errors with a cantilever are those of the samples, see `closed`, and of the atlas' curve, times `USUAL.slack`: a
+    turn of the base moves by what the curve's derivatives err.
+    """
+    pull_off, zero_load, *jumps = (
+        getattr(atlas, name)(np.array(tabors)) for name in ("pull_off", "zero_load", "jump_on", "jump_off")
+    )
+    for i, (tabor, stiffness, unit) in enumerate(zip(tabors, stiffnesses, units, strict=True)):
+        values = dict[str, Quantity]()
+        found = {
+            "pull_off_force": _at(pull_off, "load", i) * -1,
+            "pull_off_radius": _at(pull_off, "contact_radius", i),
+            "zero_load_radius": _at(zero_load, "contact_radius", i),
+        }
+        if math.isinf(stiffness):
+            for name, jump in zip(("jump_on", "jump_off"), jumps, strict=True):
+                found |= _take_off(name, _at(jump.take_off, "approach", i), _at(jump.take_off, "load", i), stiffness)
+            found["energy_lost"] = _at(jumps[0], "energy", i) + _at(jumps[1], "energy", i)
+        else:
+            read = closed("atlas", partial(theories.half_space, number=number), tabor, stiffness, unit).values
+            slack = Estimate(0.0, USUAL.slack * float(atlas.curve(tabor).errors[:2].max(axis=1).sum()))
+            more = _in_si(dict.fromkeys(read.keys() - found.keys(), slack), unit)
+            values = {name: Quantity.of(read[name] + error, 1.0, error.unit) for name, error in more.items()}
+        yield values | _in_si(found, unit)
+
+
+def _at(states: object, name: str, i: int) -> Estimate:
+    """A number of the atlas with its error."""
+    return Estimate(float(getattr(states, name)[i]), float(getattr(states, f"{name}_error")[i]))
 
 
 def closed(

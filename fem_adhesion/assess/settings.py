@@ -41,6 +41,17 @@ class Settings:
     # Closed theories as samples
     number: int = 100_001  # of each stretch; odd, so that every second sample has the same ends
     nodes: int = 48  # of the polynomial through JKR's theory on layers
+    sampled: int = 8001  # places on the atlas' curve; energies err by 2e-7
+    zooms: int = 3  # intervals of samples at a turn of the base, each divided again
+    zoomed: int = 65  # places on such an interval
+    slack: float = (
+        10.0  # errors of the atlas' curve by which its turns may be off, in eps, and energies, in R dgamma eps
+    )
+    draws: int = 256  # of the inputs: quantiles at 16 and 84 % to 5 % of the spread
+    drawn: int = 401  # places on the atlas' curve for each draw
+    step: float = 0.25  # of a standard deviation, by which an input is changed for a derivative
+    least_step: float = 1e-3  # of the input: the solvers err by 1e-6, a derivative then by 1e-3
+    straight: float = 0.2  # of the linear spread, by which quantiles may be off to bear it out
     compressed: float = 2.0  # load to which the curves go
     pressed: float = 0.25  # approach to which a rigid sphere's curve goes; it bears no load at 0.206
     rounded: float = 1e-3  # root of the contact radius below which Maugis's approach is a sum of rounding errors

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, TypeVar
@@ -12,14 +12,25 @@ from typing import Any, TypeVar
 import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.assess import predictions, verdict
-from fem_adhesion.assess.predictions import ON_LAYER, Prediction, closed, computed, exact_sphere
+from fem_adhesion.assess.predictions import (
+    ON_LAYER,
+    Prediction,
+    Quantity,
+    closed,
+    computed,
+    exact_sphere,
+    on_atlas,
+    read_atlas,
+)
 from fem_adhesion.assess.settings import USUAL
+from fem_adhesion.assess.spread import Spreads, spreads
 from fem_adhesion.assess.theories import bradley, dmt_maugis, jkr, maugis_dugdale
 from fem_adhesion.assess.thin_sample import ThinSample, enough, hertz_until, indentations
 from fem_adhesion.bodies.held import Hemisphere
-from fem_adhesion.common.contact import Contact
+from fem_adhesion.common.contact import Contact, Inputs
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene
+from halfspace.atlas.series import LEAST, MOST
 from halfspace.elastic.layers import Layers
 from halfspace.errors import InputError, Unsolved, tried
 from halfspace.laws import LENNARD_JONES
@@ -46,8 +57,8 @@ class Assessment:
     true profile of sphere or spheres on it; `finite` the elastic hemisphere held at its mid-plane, with its counter-
     body if that is more than a rigid wall, or the thin sample under the true profile. The deviations are those of the
     last from the first, by cause; distances are those of every other model from the best one, the nearest first;
-    cautions say what is left out of account, the verdict which model to trust, and `sample` what there is to say of a
-    thin one beside that.
+    cautions say what is left out of account, the verdict which model to trust, `sample` what there is to say of a thin
+    one beside that, and `spreads` what the standard deviations of the inputs leave of the numbers.
     """
 
     contact: Contact
@@ -62,6 +73,7 @@ class Assessment:
     verdict: tuple[str, ...]
     seconds: float = field(compare=False)
     sample: ThinSample | None = None
+    spreads: Spreads | None = None
 
     @property
     def models(self) -> tuple[Prediction, ...]:
@@ -76,10 +88,14 @@ class Assessment:
         return {name: float(other.of(mu)) if other else mu for name, other in PARAMETERS.items()}
 
 
-def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
-    """Assess a contact, or raise NotConverged if the half-space's curve cannot be traced."""
+def assess(contact: Contact, progress: Progress = unheard, inputs: Inputs | None = None) -> Assessment:
+    """Assess a contact, or raise NotConverged if the half-space's curve cannot be traced.
+
+    Given the inputs that it was made of, find what their standard deviations make of the numbers.
+    """
     began = time.perf_counter()
-    begin = in_turn(progress, 5 if contact.layer else 4)
+    uncertain = inputs if inputs and inputs.deviations else None
+    begin = in_turn(progress, 4 + (contact.layer is not None) + (uncertain is not None))
     begin("half-space")
     half_space = _half_space(contact)
     begin("closed theories")
@@ -99,6 +115,10 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
         begin("thickness that is enough")
     doubts = tuple(verdict.cautions(contact, half_space))
     sample, unknown = _tried("thickness that is enough", partial(_thin_sample, half_space=half_space), contact)
+    found, unspread = None, None
+    if uncertain:
+        begin("spread by that of the inputs")
+        found, unspread = _tried("spread by that of the inputs", lambda _: _spreads(uncertain), contact)
     by_profile = None if contact.layer and tabor > USUAL.computed else profile  # JKR's theory on layers has no profile
     distances = verdict.ranked((half_space, profile, finite, *theories), contact.spacing)
     warnings = [model.warning for model in (half_space, profile, finite) if model]
@@ -111,11 +131,27 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
         tuple(verdict.deviations(half_space, by_profile, finite, contact.spacing)),
         distances,
         verdict.regime(tabor),
-        (*doubts, *verdict.yielding(contact), *filter(None, (reason, why_not, unknown, *warnings))),
+        (*doubts, *verdict.yielding(contact), *filter(None, (reason, why_not, unknown, unspread, *warnings))),
         tuple(verdict.verdict(finite or half_space, distances, computed=finite is not None, doubts=doubts)),
         time.perf_counter() - began,
         sample,
+        found,
     )
+
+
+def _spreads(inputs: Inputs) -> Spreads:
+    """What the standard deviations of inputs make of the half-space's numbers, or of the thin sample's."""
+
+    def values(contact: Contact) -> Mapping[str, Quantity]:
+        return (_finite if contact.layer else _half_space)(contact).values
+
+    def drawn(contacts: Sequence[Contact]) -> list[dict[str, Quantity]]:
+        if not all(contact.layer is None and _in_atlas(contact) for contact in contacts):
+            return []
+        numbers = [(contact.units.tabor, contact.reduced_stiffness, contact.units) for contact in contacts]
+        return list(read_atlas(*zip(*numbers, strict=True), number=USUAL.drawn))
+
+    return spreads(ON_LAYER if inputs.contact().layer else HALF_SPACE, inputs, values, drawn)
 
 
 def require_known(contact: Contact) -> None:
@@ -129,11 +165,18 @@ def require_known(contact: Contact) -> None:
 def _half_space(contact: Contact) -> Prediction:
     """The computed half-space, or the closed theory that is as good."""
     units, stiffness = contact.units, contact.reduced_stiffness
+    if _in_atlas(contact):
+        return on_atlas(HALF_SPACE, units.tabor, stiffness, units)
     if units.tabor > USUAL.computed:
         return predictions.large_tabor(units.tabor, stiffness, units)
     if units.tabor < USUAL.rigid:
         return closed("rigid half-space", bradley, units.tabor, stiffness, units)
     return _traced(HALF_SPACE, contact)
+
+
+def _in_atlas(contact: Contact) -> bool:
+    """Whether the atlas of the half-space has the contact; of a thin sample it has what that is compared with."""
+    return contact.law == LENNARD_JONES and LEAST <= contact.units.tabor <= MOST
 
 
 def _traced(model: str, contact: Contact, rtol: float = USUAL.rtol, **scene: Any) -> Prediction:

@@ -11,12 +11,13 @@ from rich.text import Text
 
 from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Quantity
 from fem_adhesion.assess.settings import USUAL
+from fem_adhesion.assess.spread import Spread
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.thin_sample import ThinSample
 from fem_adhesion.common import record as common
 from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain
-from fem_adhesion.common.numbers import KINDS, PREFIXES, engineering, exponent_of, sizes_told, with_error
+from fem_adhesion.common.numbers import KINDS, PREFIXES, decade, engineering, exponent_of, sizes_told, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Prose, flow
 from fem_adhesion.registry import record_of, words_of
 from halfspace.laws import LENNARD_JONES
@@ -28,6 +29,7 @@ def report(assessment: Assessment) -> RenderableType:
     """Everything for the terminal."""
     return Group(
         *_head(assessment),
+        *_spreads(assessment),
         models_table(assessment),
         *map(Prose, _legend(assessment)),
         Text(),
@@ -57,8 +59,56 @@ def _head(assessment: Assessment) -> Iterator[RenderableType]:
     yield Text()
 
 
+def _spreads(assessment: Assessment) -> Iterator[RenderableType]:
+    """What the standard deviations of the inputs leave of the numbers, and which of them counts most."""
+    spreads = assessment.spreads
+    if not spreads:
+        return
+    rows = spreads.quantities
+    shares = [
+        [f"{x.replace('_', ' ')} {100 * part:.0f} %" for x, part in row.shares.items() if part >= 0.05]
+        for row in rows.values()
+    ]
+    columns = [
+        _words(rows),
+        Column(f"{spreads.model}", [spread_told(row) for row in rows.values()], words=True),
+        Column("variance from", [", ".join(parts) for parts in shares], words=True),
+    ]
+    yield Fitted(columns, ["what the inputs leave: value +- standard deviation, and what that comes from"])
+    if not spreads.drawn:
+        yield Prose("To the first order; there is no atlas of this contact whose draws of the inputs could confirm it.")
+    elif not all(row.linear for row in rows.values()):
+        yield Prose(
+            f"Median and range: linear propagation fails there, as {spreads.drawn} random draws of the inputs show; "
+            "they are the median and the 16 % and 84 % quantiles of those draws that have the quantity."
+        )
+    yield Text()
+
+
+def spread_told(spread: Spread) -> str:
+    """A quantity to the digits that its spread leaves, ``37.1 +- 7.4 nN``; quantiles where linear propagation fails."""
+    low, median, high = spread.quantiles or (math.nan,) * 3
+    value, size = (spread.value, spread.deviation) if spread.linear else (median, (high - low) / 2)
+    exponent = exponent_of(max(abs(value), size))
+    decimals = max(0, 1 - decade(size / 10.0**exponent)) if size else USUAL.digits
+
+    def shown(number: float) -> str:
+        return f"{number / 10.0**exponent:.{decimals}f}"
+
+    unit = f"{PREFIXES[exponent]}{spread.unit}"
+    if spread.linear:
+        return f"{shown(value)} +- {shown(size)} {unit}"
+    if not spread.quantiles:
+        return f"{shown(spread.value)} {unit}, spread not known"
+    part = f"; only {100 * spread.present:.0f} % of draws have it" if spread.present < 1 else ""
+    return f"median {shown(median)}, {shown(low)} to {shown(high)} {unit}{part}"
+
+
 def _legend(assessment: Assessment) -> Iterator[str]:
     """How to read the table of models; only what stands in it."""
+    for model in assessment.models:
+        if model.source == "atlas":
+            yield f"The {model.model} is read from halfspace.atlas, made of solved curves, and not solved anew."
     shown = {name for model in assessment.models for name in model.values}
     if shown & {name for names in POSITIONS for name in names}:
         yield (
@@ -86,7 +136,7 @@ def contact_radius(assessment: Assessment) -> str:
     theirs = "the edge of the theory's own contact, without the ring of attraction around it"
     said = []
     for computed, meaning in ((True, edge_told(assessment.contact.law)), (False, theirs)):
-        if names := [model.model for model in named if model.is_computed == computed]:
+        if names := [model.model for model in named if (model.source != "theory") == computed]:
             said.append(f"of {', '.join(names)}, {meaning}")
     return f"Contact radius: {'; '.join(said)}."
 
@@ -195,8 +245,11 @@ def record(assessment: Assessment) -> dict[str, object]:
         "radius_ratio": contact.units.radius_ratio,
         "parameters": assessment.parameters,
         "regime": assessment.regime,
-        "models": [{"model": m.model, "values": m.values, "missed": m.missed} for m in assessment.models],
+        "models": [
+            {"model": m.model, "source": m.source, "values": m.values, "missed": m.missed} for m in assessment.models
+        ],
         "thin_sample": assessment.sample,
+        "spreads": assessment.spreads,
         "deviations": assessment.deviations,
         "distances": assessment.distances,
         "definitions": {"contact_radius": contact_radius(assessment)},

@@ -63,7 +63,9 @@ def ranked(models: Sequence[Prediction | None], spacing: float) -> tuple[Distanc
         if best is None or model is None or model is best:
             continue
         # The contact radius of a closed theory is another than a computed one.
-        names = [name for name in best.values if name not in RADII or model.is_computed == best.is_computed]
+        names = [
+            name for name in best.values if name not in RADII or (model.source == "theory") == (best.source == "theory")
+        ]
         known = {name: off for name in names if (off := relative(model, best, name, spacing))}
         sizes = {name: abs(off.value) + off.error for name, off in known.items()}
         worst = max(sizes, key=sizes.__getitem__, default=None)

@@ -6,8 +6,10 @@ What is asked of a material is asked of it only, and never guessed: Poisson's ra
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 from fem_adhesion.bodies.body import Body, GripName
 from fem_adhesion.bodies.half_space import HalfSpace
@@ -18,7 +20,10 @@ from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import LAYER_THICKNESS, require_poisson
-from halfspace.scaling import Units, contact_modulus, equivalent_radius
+from halfspace.scaling import Units, contact_modulus, equivalent_radius, spacing_of
+
+if TYPE_CHECKING:
+    from fem_adhesion.common.numbers import Measured
 
 RIGID = 1e-9  # part of the pair's compliance that stands for none: a rigid sphere is a counter-body all the same
 
@@ -152,6 +157,30 @@ class Contact:
         if self.counter_modulus is None or self.counter_poisson is None:
             return None
         return self.counter_modulus, require_poisson(self.counter_poisson)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What a contact is made of: its quantities as they were measured, by the names of `Contact`, and its other parts.
+
+    A Hamaker constant in J, ``hamaker``, may take the place of the spacing, which then follows from it and the work of
+    adhesion.
+    """
+
+    quantities: Mapping[str, Measured]
+    parts: Mapping[str, Any]
+
+    def contact(self, **changed: float) -> Contact:
+        """Contact of the values, some of them changed; InputError as of `Contact`."""
+        values: dict[str, Any] = {name: given.value for name, given in self.quantities.items()} | changed
+        if "hamaker" in values:
+            values["spacing"] = spacing_of(values.pop("hamaker"), values["work_of_adhesion"])
+        return Contact(**values, **self.parts)
+
+    @property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviations of those quantities that have one."""
+        return {name: given.deviation for name, given in self.quantities.items() if given.deviation}
 
 
 def edge_told(law: Law) -> str:

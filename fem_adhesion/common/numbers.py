@@ -9,7 +9,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -36,7 +36,10 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "work_of_adhesion": ("J/m^2", "0.1J/m^2"),
     "stiffness": ("N/m", "0.2N/m"),
     "force": ("N", "1nN"),
+    "poisson": ("1", "0.3"),
+    "counter_poisson": ("1", "0.3"),
 }
+SPREAD = re.compile(r"\s*(?:\+/?-|±)\s*")
 
 
 PREFIXES = dict(zip(range(-24, 15, 3), ("y", "z", "a", "f", "p", "n", "µ", "m", "", "k", "M", "G", "T"), strict=True))
@@ -54,14 +57,37 @@ def parse(text: str, name: str) -> float:
     if not found:
         raise InputError(f"{name} = {text!r} is not a number with a unit; write it as {example}")
     value = float(found[1]) * _size(text, found[2], name)
-    if not 0 < value < math.inf:
+    if not (0 < value < math.inf or KINDS.get(name, LENGTH)[0] == "1"):
         raise InputError(f"{name} = {text} is outside 0 < {name} < inf; write it as {example}")
     return value
+
+
+class Measured(NamedTuple):
+    """A number as it was measured, in SI: its value, and its standard deviation, 0 if it counts as exact."""
+
+    value: float
+    deviation: float = 0.0
+
+
+def measured(text: str, name: str) -> Measured:
+    """Read a quantity as `parse`, with its standard deviation behind it if there is one: ``100+-20nm``, or with ±."""
+    first, *second = SPREAD.split(text, maxsplit=1)
+    if not second:
+        return Measured(parse(text, name))
+    deviation = parse(second[0], name)
+    found, unit = NUMBER_AND_UNIT.fullmatch(first), NUMBER_AND_UNIT.fullmatch(second[0])
+    value = parse(first if unit is None or (found and found[2]) else f"{first}{unit[2]}", name)
+    if not deviation < value:
+        limit = f"a standard deviation below the value; write it as {KINDS[name][1]}"
+        raise InputError(f"{name} = {text} may be negative, limit: {limit}")
+    return Measured(value, deviation)
 
 
 def _size(text: str, written: str, name: str) -> float:
     """Size of a unit in the SI unit of the quantity."""
     unit, example = KINDS.get(name, LENGTH)
+    if unit == "1" and not written:
+        return 1.0
     if not written:
         raise InputError(f"{name} = {text} has no unit, limit: a multiple of {unit}; write it as {example}")
     try:
@@ -90,8 +116,8 @@ def with_error(quantity: Estimate, scale: float = 1.0, digits: int = DIGITS) -> 
     number = quantity * scale
     if not math.isfinite(number.error):
         return f"{number.value:.{digits}g}(?)"
-    most = digits - 1 - _decade(number.value)
-    decimals = max(0, min(most, -_decade(number.error)) if number.error else most)
+    most = digits - 1 - decade(number.value)
+    decimals = max(0, min(most, -decade(number.error)) if number.error else most)
     uncertain = max(1, math.ceil(number.error * 10**decimals * (1 - 1e-9)))
     return f"{number.value:.{decimals}f}({uncertain})"
 
@@ -123,10 +149,11 @@ def sizes_told(units: Units) -> list[str]:
 
 def exponent_of(value: float) -> int:
     """Power of 1000 below a value, as an exponent of ten, among those that have a prefix."""
-    return min(max(3 * (_decade(value) // 3), min(PREFIXES)), max(PREFIXES))
+    return min(max(3 * (decade(value) // 3), min(PREFIXES)), max(PREFIXES))
 
 
-def _decade(value: float) -> int:
+def decade(value: float) -> int:
+    """Power of ten of the first digit."""
     return math.floor(math.log10(abs(value))) if value else 0
 
 

@@ -17,7 +17,7 @@ from fem_adhesion.registry import PARTS, class_of, name_of
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
-    from fem_adhesion.common.contact import Contact
+    from fem_adhesion.common.contact import Contact, Inputs
     from fem_adhesion.common.options import Parser
     from fem_adhesion.scene import Scene
     from halfspace.laws import Law
@@ -34,8 +34,10 @@ MATERIALS = {"small": "linear-elastic", "finite": "neo-hookean"}  # by the strai
 
 def add_contact(command: Parser, *, in_si_only: bool = False) -> None:
     """Add the options of a contact: of a material only, or of a material or a Tabor parameter."""
-    contact = command.add_argument_group("contact", "Quantities carry units; none is guessed.")
-    given, plain = "asked for", ""
+    carry = "Quantities carry units; none is guessed."
+    spread = " Each may have a standard deviation, as 100+-20nm or 0.30+-0.02: what follows from it is told."
+    contact = command.add_argument_group("contact", carry + spread if in_si_only else carry)
+    given, plain, number = "asked for", "", str if in_si_only else float
     if not in_si_only:
         given = f"asked for with a material, {POISSON:g} unless given with --tabor"
         plain = ", with --tabor in R dgamma/eps"
@@ -51,8 +53,8 @@ def add_contact(command: Parser, *, in_si_only: bool = False) -> None:
         ("stiffness", "K", f"of the cantilever, as 0.2N/m{plain}; fixed grips unless given"),
     ):
         contact.add_argument(f"--{name}", help=text, metavar=metavar)
-    contact.add_argument("--poisson", type=float, help=f"Poisson's ratio, 0 <= nu < 0.5: {given}", metavar="NU")
-    contact.add_argument("--counter-poisson", type=float, help=f"of the other body: {given}", metavar="NU")
+    contact.add_argument("--poisson", type=number, help=f"Poisson's ratio, 0 <= nu < 0.5: {given}", metavar="NU")
+    contact.add_argument("--counter-poisson", type=number, help=f"of the other body: {given}", metavar="NU")
 
 
 def add_body(body: Group) -> None:
@@ -168,15 +170,18 @@ def contact_of(options: argparse.Namespace) -> Contact | None:
         return None
     if not present:
         raise InputError("tabor = None and no material, limit: one of both; give --tabor 2, say, or --radius 100nm ...")
-    return material_of(options)
+    inputs = inputs_of(options)
+    for name in inputs.deviations:
+        why = "limit: a value without a standard deviation, which assess alone takes; leave it out"
+        raise InputError(f"{name} = {getattr(options, name)}, {why}")
+    return inputs.contact()
 
 
-def material_of(options: argparse.Namespace, **more: Any) -> Contact:
-    """The contact in SI; InputError if it lacks something, or has a spacing twice or by a constant of another law."""
-    from fem_adhesion.common.contact import Contact
-    from fem_adhesion.common.numbers import KINDS, parse
+def inputs_of(options: argparse.Namespace, **more: Any) -> Inputs:
+    """What the contact is made of; InputError if something is missing, or the spacing given twice."""
+    from fem_adhesion.common.contact import Inputs
+    from fem_adhesion.common.numbers import measured
     from halfspace.laws import LENNARD_JONES
-    from halfspace.scaling import spacing_of
 
     missing = [f"--{name.replace('_', '-')}" for name in MATERIAL if getattr(options, name) is None]
     laws, law = given(options, *LAW), law_of(options)
@@ -187,11 +192,12 @@ def material_of(options: argparse.Namespace, **more: Any) -> Contact:
         raise InputError(f"{' with '.join(laws)}, limit: one of both, as each follows from the other; leave one out")
     if law != LENNARD_JONES:
         refuse(options, ("hamaker",), "the 3-9 law, by whose tail it gives the spacing, and --spacing with others")
-    named = {name: text for name in KINDS if (text := getattr(options, name, None)) is not None}
-    quantities: dict[str, Any] = {name: parse(text, name) for name, text in named.items()}
-    if "hamaker" in quantities:
-        quantities["spacing"] = spacing_of(quantities.pop("hamaker"), quantities["work_of_adhesion"])
-    return Contact(**quantities, poisson=options.poisson, counter_poisson=options.counter_poisson, law=law, **more)
+    named = {
+        name: text
+        for name in (*MATERIAL, *LAW, *COUNTER, "stiffness", "thickness")
+        if (text := getattr(options, name, None)) is not None
+    }
+    return Inputs({name: measured(str(text), name) for name, text in named.items()}, {"law": law, **more})
 
 
 def stiffness_of(options: argparse.Namespace, contact: Contact | None) -> float:

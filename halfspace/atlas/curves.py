@@ -60,9 +60,9 @@ class Curve(Valued):
     coefficients: Array
     errors: Array
 
-    def states(self, count: int = 500) -> States:
-        """States at so many places from separation to compression, evenly spaced."""
-        return States(*self._numbers(np.linspace(0, self._last, count)))
+    def states(self, count: int = 500, *, places: ArrayLike | None = None) -> States:
+        """States at so many places from separation to compression, evenly spaced, or at the places (n,) given."""
+        return States(*self._numbers(np.linspace(0, self._last, count) if places is None else np.asarray(places)))
 
     def branches(self, coordinate: str, *, stiffness: float = math.inf) -> dict[str, tuple[float, float]]:
         """Parts of the curve in order along which a coordinate goes in one direction, and its range on each.

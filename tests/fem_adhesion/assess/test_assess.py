@@ -368,7 +368,7 @@ def test_the_command_prints_and_writes_what_it_computed(said):
 
 def test_a_hamaker_constant_in_the_place_of_the_spacing(monkeypatch, capsys):
     contacts = []
-    monkeypatch.setattr(study, "assess", lambda contact, _: contacts.append(contact) or pytest.skip.Exception)
+    monkeypatch.setattr(study, "assess", lambda contact, *_: contacts.append(contact) or pytest.skip.Exception)
     by_spacing, by_hamaker = (
         [*ARGUMENTS[: ARGUMENTS.index("--spacing")], *law, *ARGUMENTS[ARGUMENTS.index("--spacing") + 2 :]]
         for law in (("--spacing", f"{spacing_of(6.5e-20, 0.1)}m"), ("--hamaker", "65zJ"))
@@ -420,10 +420,6 @@ def test_the_half_space_in_si(silica):
     assert values["jump_on_base"].value == pytest.approx(on.approach * 0.3e-9 + on.load * 1e-8 / 0.2, rel=1e-6)
     lost = cycle(path, 0.2 * 0.3e-9 / 1e-8).energy_lost.value
     assert values["energy_lost"].value == pytest.approx(lost * 1e-8 * 0.3e-9, rel=1e-6)
-    own = cycle(silica.half_space.curve, 0.2 * 0.3e-9 / 1e-8).jump_on.take_off
-    errors = own.approach_error * 0.3e-9, own.load_error * 1e-8 / 0.2
-    assert values["jump_on_separation"].error == pytest.approx(errors[0], rel=1e-6, abs=0)
-    assert values["jump_on_base"].error == pytest.approx(sum(errors), rel=1e-6, abs=0)
 
 
 def test_the_theories_stand_where_they_should(silica):
@@ -769,7 +765,7 @@ def test_the_arrows_of_the_figure_are_the_two_jumps(axes, silica):
     on = silica.half_space.values["jump_on_separation"].value * 1e9
     off = silica.half_space.values["jump_off_separation"].value * 1e9
     assert [arrow.xyann[0] for arrow in arrows] == pytest.approx([on, off])
-    jump_off = cycle(silica.half_space.curve, silica.contact.reduced_stiffness).jump_off
+    jump_off = cycle(halfspace.trace(silica.contact.units.tabor), silica.contact.reduced_stiffness).jump_off
     assert arrows[1].xyann[1] == pytest.approx(jump_off.take_off.load * silica.contact.units.load * 1e9, rel=1e-6)
     (note,) = notes  # it lands far beyond the frame
     lands = (1 - jump_off.landing.approach) * silica.contact.units.approach * 1e9
