@@ -148,8 +148,8 @@ def _spreads(inputs: Inputs) -> Spreads:
     def drawn(contacts: Sequence[Contact]) -> list[dict[str, Quantity]]:
         if not all(contact.layer is None and _in_atlas(contact) for contact in contacts):
             return []
-        numbers = [(contact.units.tabor, contact.reduced_stiffness, contact.units) for contact in contacts]
-        return list(read_atlas(*zip(*numbers, strict=True), number=USUAL.drawn))
+        units, stiffnesses = [c.units for c in contacts], [c.reduced_stiffness for c in contacts]
+        return list(read_atlas([one.tabor for one in units], stiffnesses, units, USUAL.drawn))
 
     return spreads(ON_LAYER if inputs.contact().layer else HALF_SPACE, inputs, values, drawn)
 

@@ -261,7 +261,7 @@ def test_a_thickness_is_in_si_with_a_material_else_in_beta(tmp_path, capsys):
 
 def test_thickness_and_foundation_are_heeded(monkeypatch):
     asked = []
-    monkeypatch.setattr(study, "assess", lambda contact, _: asked.append(contact))
+    monkeypatch.setattr(study, "assess", lambda contact, *_: asked.append(contact))
     with pytest.raises(AttributeError):
         cli.main([*ARGUMENTS, "--foundation", "sliding"])
     layer = asked[0].layer

@@ -245,7 +245,7 @@ def test_assess_refuses_in_one_line_before_any_work(arguments, message, monkeypa
 def test_every_option_of_a_contact_is_heeded(monkeypatch):
     """Every number distinct, read back from the contact that is assessed."""
     asked = []
-    monkeypatch.setattr("fem_adhesion.assess.study.assess", lambda contact, _: asked.append(contact))
+    monkeypatch.setattr("fem_adhesion.assess.study.assess", lambda contact, *_: asked.append(contact))
     other = ["--counter-modulus", "3GPa", "--counter-poisson", "0.41", "--counter-radius", "0.7um"]
     held = ["--grip", "bonded", "--stiffness", "0.2N/m"]
     with pytest.raises(AttributeError):
