@@ -10,251 +10,194 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property, partial
-from itertools import product
+from fractions import Fraction
+from functools import partial
 
 import numpy as np
 
-from fem_adhesion.benchmark.problems import KINDS, Problem, by_atlas
-from halfspace import atlas
+from fem_adhesion.benchmark.problems import KINDS, Problem, by_atlas, events_along
+from fem_adhesion.common.page import data_rows
 from halfspace.atlas.series import LEAST, MOST
+from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.theories import closed_forms as jkr
-from halfspace.values import Array
 
 Values = Mapping[str, float]
 Prediction = tuple[Values, Values]  # values and, of those that are left open, spreads
 
-REMEDIES: Mapping[str, str] = {
-    "sound": "Nothing to mend; refine once more to see which digits stand.",
-    "domain-too-small": "Enlarge the domain until the approaches stand still: they err as 1/L, the loads as L^-4.",
-    "grid-too-coarse": "Refine at the contact edge, to 0.1 beta/tabor^2: the force ripples as the edge moves.",
-    "sampled-jumps": "Solve for the jumps as folds, or halve the step of the approach until they stand still.",
-    "factor-2-pi-r": "Integrate the pressure over rings, 2 pi r dr, and give the load in R dgamma.",
-    "modulus-e-for-e-star": "Use E* = E/(1 - nu^2), of two bodies 1/E* = 1/E1* + 1/E2*, in the place of E.",
-    "factor-2-gamma": "Use the work of adhesion, dgamma = gamma1 + gamma2 - gamma12, which is 2 gamma of equal bodies.",
-    "radius-of-one-body": "Use R = R1 R2/(R1 + R2), half a radius of equal spheres, in the place of R1.",
-    "displacement-for-approach": "Give alpha, by which undeformed surfaces a spacing eps apart are pressed together.",
-    "load-control-tear-off": "Go on past the pull-off: under fixed grips the contact ends at the fold in approach.",
-    "hertz-radius-in-jkr": "Solve for JKR's radius at the approach: Hertz's, a^2 = R alpha, leaves out the tension.",
-    "jkr-for-intermediate": "Use the solution at the Tabor parameter, or `fem-adhesion formulas`; JKR is its limit.",
-    "cannot-tell": "Give more quantities, of jumps and under no load too, at two Tabor parameters or more.",
-}
+REMEDIES: Mapping[str, str] = {row["cause"]: row["remedy"] for row in data_rows("benchmark", "remedies.csv")}
 """What to do by cause."""
 
-SHAPE = 0.47  # shift of the approach of a clamped block in mu |W|/L: measured on blocks of 30 and 60 beta
-FEW = ("jump_on", "jump_off")
-PLACES = 4000  # on a curve of the atlas: turns by parabolas are then right to 1e-8
-FACTORS = (1 / (2 * math.pi), 1 / math.pi, math.pi, 2 * math.pi)
-ACTS, LOAD_UNIT = ("Tabor parameter", "loads", "radii"), (0, -1, 0)
-MATERIAL: Mapping[str, tuple[tuple[float | tuple[float, float], ...], tuple[tuple[float, float, float], ...]]] = {
-    "factor-2-pi-r": (FACTORS, ((0, 1, 0),)),
-    "modulus-e-for-e-star": (((0.75, 0.999), (1.5, 2.0)), ((-2 / 3, 0, -1 / 3), (-2 / 3, 0, 0))),
-    "factor-2-gamma": ((2.0, 0.5), ((2 / 3, 1, 1 / 3), (2 / 3, 0, 0), (0, -1, -1 / 3), LOAD_UNIT)),
-    "radius-of-one-body": ((2.0, 0.5), ((1 / 3, 1, 2 / 3), (1 / 3, 0, 0), (0, -1, -2 / 3), LOAD_UNIT)),
+CLAMPED = 0.47  # shift of the approach of a clamped block in mu |W|/L, measured on blocks of 30 and 60 beta
+BOXES: Mapping[str, float] = {
+    "clamped at beta/L of": CLAMPED,
+    "free at beta/L of": -CLAMPED,
+    "attracting no farther than beta/L of": 0.0,
 }
-"""Factors by which a constant is wrong, or their ranges, and its powers in the Tabor parameter, in loads and in radii.
-
-The modulus is E in the place of E*, of one body or of two equal ones. The powers are those of a constant that is wrong
-throughout; in the Tabor parameter alone; in the units of the results; and in that of the loads.
-"""
-
-APPROACHES: Mapping[str, tuple[float, float, float, float]] = {
-    "of the other sign": (0, -1, 0, 0),
-    "from where surfaces touch": (-1, 1, 0, 0),
-    "distance of the undeformed surfaces": (1, -1, 0, 0),
-    "central gap of the other sign": (0, 0, 0, -1),
-    "central gap": (0, 0, 0, 1),
-    "central distance": (1, 0, 0, 1),
-    "displacement of the surface": (0, 1, 0, 1),
-    "displacement of the surface, outwards": (0, -1, 0, -1),
-    "in beta^2/R in the place of eps": (0, 0, 1, 0),
-}
-"""What is given for the approach: a sum of 1, the approach in eps and in beta^2/R, and the central gap, so often."""
-
-
-@dataclass(frozen=True)
-class Truth:
-    """Our solution of a problem, and what the causes ask of it at other Tabor parameters."""
-
-    problem: Problem
-
-    @cached_property
-    def values(self) -> Values:
-        """Our values."""
-        return {name: number.value for name, number in self.problem.values.items()}
-
-    @property
-    def tabor(self) -> float:
-        """Tabor parameter."""
-        return self.problem.scene.tabor
-
-    @cached_property
-    def curve(self) -> Array:
-        """Approach, load and contact radius (3, n) along the curve of the atlas."""
-        states = atlas.curve(self.tabor).states(PLACES)
-        return np.array([states.approach, states.load, states.contact_radius])
+ACTS = ("tabor", "load", "radius")
 
 
 @dataclass(frozen=True)
 class Variant:
-    """A cause in one of the ways in which it occurs; its parameter is between the ends, if it has one.
+    """A cause in one of the ways in which it occurs; its parameter is between the ends, if they differ.
 
     A prediction is None of a problem for which it is not known at once.
     """
 
     cause: str
     what: str
-    predict: Callable[[Truth, float], Prediction | None]
-    ends: tuple[float, float] | None = None
+    predict: Callable[[Problem, float], Prediction | None]
+    ends: tuple[float, float] = (1.0, 1.0)
 
 
 def variants() -> Iterator[Variant]:
     """All causes in all ways, sound numbers first."""
-    yield Variant("sound", "", lambda truth, _: (truth.values, {}))
-    for sign, word in ((1, "stiff"), (-1, "soft")):
-        yield Variant("domain-too-small", f"too {word}; mu/L or so", partial(_boxed, sign), (1e-6, 0.3))
-    yield Variant("grid-too-coarse", "a receding edge is held by this part of dgamma", _coarse, (1e-6, 0.5))
+    yield Variant("sound", "", lambda problem, _: (right(problem), {}))
+    for what, shape in BOXES.items():
+        yield Variant("domain-too-small", what, partial(_boxed, shape), (1e-6, 0.5))
+    for sign, word in ((1, "held"), (-1, "let go")):
+        yield Variant(
+            "grid-too-coarse", f"a receding edge is {word} by a part of dgamma of", partial(_coarse, sign), (1e-6, 0.5)
+        )
     for late, word in ((1, "after"), (-1, "before")):
-        for names, which in ((FEW, "jumps"), ((*FEW, "pull_off", "zero_load"), "all events")):
-            what = f"{which} read off the row {word}, in steps of (eps)"
-            yield Variant("sampled-jumps", what, partial(_sampled, late, names), (1e-6, 1.0))
-    for cause, (factors, ways) in MATERIAL.items():
-        for factor, powers in product(factors, ways):
-            if isinstance(factor, tuple):
-                yield Variant(cause, "E/E*", partial(_material, powers), factor)
-            else:
-                told = ", ".join(f"{name} by {factor**p:.3g}" for name, p in zip(ACTS, powers, strict=True) if p)
-                yield Variant(cause, told, partial(_constant, powers, factor))
-    for what, parts in APPROACHES.items():
-        yield Variant("displacement-for-approach", what, partial(_instead, parts))
+        for few, which in ((True, "jumps"), (False, "all events")):
+            what = f"{which} read off the row {word}, in steps of eps times"
+            yield Variant("sampled-jumps", what, partial(_sampled, late, few), (1e-6, 1.0))
+    for row in data_rows("benchmark", "constants.csv"):
+        powers = [float(Fraction(row[name])) for name in ACTS]
+        for first, _, last in (text.partition(":") for text in row["factors"].split()):
+            ends = float(Fraction(first)), float(Fraction(last or first))
+            acts = ", ".join(
+                f"{name} by {ends[0] ** power:.3g}" for name, power in zip(ACTS, powers, strict=True) if power
+            )
+            yield Variant(row["cause"], "E/E* of" if last else acts, partial(_constant, powers), ends)
+    for row in data_rows("benchmark", "approaches.csv"):
+        parts = [float(row[name]) for name in ("one", "approach", "reduced", "gap")]
+        yield Variant("displacement-for-approach", row["what"], partial(_instead, parts))
     yield Variant("load-control-tear-off", "the pull-off given as the jump off", _torn)
-    yield Variant("hertz-radius-in-jkr", "JKR's force with a^2 = R alpha", _musen)
-    yield Variant("jkr-for-intermediate", "JKR's closed forms", _jkr)
+    yield Variant("hertz-radius-in-jkr", "JKR's force with a^2 = R alpha", partial(_theory, _musen))
+    yield Variant("jkr-for-intermediate", "JKR's closed forms", partial(_theory, _jkr))
 
 
-def _material(powers: tuple[float, float, float], truth: Truth, factor: float) -> Prediction | None:
-    tabor, load, radius = (factor**power for power in powers)
-    values = truth.values
-    if tabor != 1:
-        if not (truth.problem.in_atlas and LEAST <= truth.tabor * tabor <= MOST):
-            return None
-        values = {name: number.value for name, number in by_atlas(truth.tabor * tabor).items()}
-    sizes = {"load": load, "energy": load, "contact_radius": radius}
-    return {name: value * sizes.get(KINDS[name], 1.0) for name, value in values.items()}, {}
+def right(problem: Problem) -> dict[str, float]:
+    """Our values."""
+    return {name: number.value for name, number in problem.values.items()}
 
 
-def _constant(powers: tuple[float, float, float], factor: float, truth: Truth, _: float) -> Prediction | None:
-    return _material(powers, truth, factor)
-
-
-def _boxed(sign: int, truth: Truth, size: float) -> Prediction:
-    """A box yields less than a half-space, by a compliance that is subtracted; what the load lacks falls as L^-4."""
-    compliance, moved, spread = sign * size * truth.tabor, dict(truth.values), dict[str, float]()
-    for name, value in truth.values.items():
-        if name.endswith("approach"):
-            moved[name] = value - compliance * truth.values[name.replace("approach", "load")]
-    parts = dict.fromkeys(moved, 0.1)
-    if truth.problem.in_atlas and "jump_on_load" in moved:
-        approach, load, radius = truth.curve
-        before, after = _folds(approach, load, radius), _folds(approach - compliance * load, load, radius)
-        for name in before.keys() & after.keys() & moved.keys():
-            moved[name], parts[name] = truth.values[name] + after[name] - before[name], 0.01
-    for name, value in truth.values.items():
-        lacking = 50 * (size / SHAPE) ** 4 * abs(value)
-        spread[name] = math.inf if _after(name) else parts[name] * abs(moved[name] - value) + lacking
-    return moved, spread
-
-
-def _folds(approach: Array, load: Array, radius: Array) -> Values:
-    """Folds of a curve between which the approach falls most; empty if it does not fall."""
-    off = int(np.argmax(np.maximum.accumulate(approach) - approach))
-    on = int(np.argmax(approach[: off + 1]))
-    found = dict[str, float]()
-    for name, i in (("jump_on", on), ("jump_off", off)):
-        if not 0 < i < approach.size - 1 or on == off:
-            return {}
-        below, here, above = approach[i - 1 : i + 2]
-        t = (below - above) / (below - 2 * here + above) / 2
-        found[f"{name}_approach"] = float(here - (below - above) * t / 4)
-        for kind, along in (("load", load), ("contact_radius", radius)):
-            found[f"{name}_{kind}"] = float(along[i] + t * (along[i + 1] - along[i - 1]) / 2)
-    return {name: value for name, value in found.items() if not math.isnan(value)}  # no radius without contact
-
-
-def _after(name: str) -> bool:
+def _open(name: str) -> bool:
     """Whether it is of a landing, or an energy, which follow from more than the states by which a defect is known."""
     return "landing" in name or "energy" in name
 
 
-def _coarse(truth: Truth, part: float) -> Prediction:
+def _boxed(shape: float, problem: Problem, size: float) -> Prediction:
+    """A box of the size L = 1/size yields otherwise than a half-space, by shape mu W/L, and attracts no farther.
+
+    The tension beyond L sums up to the law's energy at the gap there; the surface is taken as undeformed so far out.
+    """
+    tabor, (approach, load, *others) = problem.scene.tabor, problem.curve
+    lacking = -2 * math.pi / tabor * problem.scene.law.energy(tabor / size**2 / 2 - approach, tabor)
+    tilted = approach - shape * size * tabor * load
+    before, yielding, both = (
+        {
+            f"{name}_{kind}": float(x)
+            for name, state in events_along(np.array([*moved, *others])).items()
+            for kind, x in zip(OBSERVABLES, state, strict=True)
+        }
+        for moved in ((approach, load), (tilted, load), (tilted, load + lacking))
+    )
+    values, spread = right(problem), dict[str, float]()
+    for name, value in values.items():
+        if math.isnan(both.get(name, math.nan) + yielding.get(name, math.nan)):
+            spread[name] = math.inf if _open(name) else abs(value)
+        else:
+            values[name] += both[name] - before[name]
+            # The surface is deformed, by a fifth of the gap at most; of a box that yields, L is not that of its width.
+            spread[name] = 0.02 * abs(yielding[name] - before[name]) + (1 if shape else 0.2) * abs(
+                both[name] - yielding[name]
+            )
+    return values, spread
+
+
+def _coarse(sign: int, problem: Problem, part: float) -> Prediction:
     """A contact edge that is held by nodes recedes as with more work of adhesion, by JKR's powers of it.
 
     How much more depends on where the nodes stand; the jump on, before which there is no edge, hardly changes.
     """
-    values, spread = dict(truth.values), dict[str, float]()
+    values, spread = right(problem), dict[str, float]()
+    for name, value in values.items():
+        before, held = name.startswith("jump_on_") and not _open(name), name == "pull_off_load"
+        spread[name] = part * (
+            abs(value) * (0.2 if before else 0.5) + (0 if before or held else 0.5 * problem.scene.tabor)
+        )
     for name, power in (("pull_off_load", 1.0), ("jump_off_load", 1.0), ("jump_off_approach", 2 / 3)):
         if name in values:
-            values[name] *= 1 + power * part
-    for name, value in truth.values.items():
-        before, held = name.startswith("jump_on_") and not _after(name), name == "pull_off_load"
-        spread[name] = part * (abs(value) * (0.2 if before else 0.5) + (0 if before or held else 0.5 * truth.tabor))
+            values[name] *= 1 + sign * power * part
     return values, spread
 
 
-def _sampled(late: int, names: tuple[str, ...], truth: Truth, step: float) -> Prediction | None:
+def _sampled(late: int, few: bool, problem: Problem, step: float) -> Prediction | None:
     """Jumps on the rows beside them, half a step from where they are, give or take its other half."""
-    if "jump_on_approach" not in truth.values:
+    values = right(problem)
+    if "jump_on_approach" not in values:
         return None
-    values, spread = dict(truth.values), {name: 2 * step for name in truth.values if _after(name)}
-    for name, forward in (("jump_on", late), ("jump_off", -late)):
-        values[f"{name}_approach"] += forward * step / 2
-        # Near a fold the other numbers go as the root of the distance.
-        spread |= {f"{name}_{kind}": math.sqrt(step) for kind in ("load", "central_gap", "contact_radius")}
-    spread |= {f"{name}_approach": step / math.sqrt(12) for name in names}
-    if "pull_off" in names:
-        spread["pull_off_load"] = (step / truth.tabor) ** 2
+    spread = {name: 2 * step for name in values if _open(name)}
+    # Near a fold the other numbers go as the root of the distance.
+    spread |= {f"{name}_{kind}": math.sqrt(step) for name in ("jump_on", "jump_off") for kind in OBSERVABLES[1:]}
+    spread |= {f"{name}_approach": step / math.sqrt(12) for name in ("jump_on", "jump_off")}
+    values["jump_on_approach"] += late * step / 2
+    values["jump_off_approach"] -= late * step / 2
+    if not few:
+        spread |= {f"{name}_approach": step / math.sqrt(12) for name in ("pull_off", "zero_load")}
+        spread["pull_off_load"] = (step / problem.scene.tabor) ** 2
     return values, spread
 
 
-def _instead(parts: tuple[float, float, float, float], truth: Truth, _: float) -> Prediction:
-    (one, alpha, reduced, gap), values = parts, dict(truth.values)
-    for name in truth.values:
-        if name.endswith("_approach"):
-            central = truth.values[name.replace("approach", "central_gap")]
-            values[name] = one + (alpha + reduced / truth.tabor) * values[name] + gap * central
+def _constant(powers: list[float], problem: Problem, factor: float) -> Prediction | None:
+    """A constant that is wrong by a factor moves the Tabor parameter, and the units of loads and radii."""
+    tabor, load, radius = (factor**power for power in powers)
+    values = right(problem)
+    if tabor != 1:
+        if not (problem.in_atlas and LEAST <= problem.scene.tabor * tabor <= MOST):
+            return None
+        values = {name: number.value for name, number in by_atlas(problem.scene.tabor * tabor).items()}
+    sizes = {"load": load, "energy": load, "contact_radius": radius}
+    return {name: value * sizes.get(KINDS[name], 1.0) for name, value in values.items()}, {}
+
+
+def _instead(parts: list[float], problem: Problem, _: float) -> Prediction:
+    one, alpha, reduced, gap = parts
+    values = right(problem)
+    for name in [name for name in values if name.endswith("_approach")]:
+        central = values[name.replace("approach", "central_gap")]
+        values[name] = one + (alpha + reduced / problem.scene.tabor) * values[name] + gap * central
     return values, {}
 
 
-def _torn(truth: Truth, _: float) -> Prediction:
-    torn = {name.replace("pull_off", "jump_off"): v for name, v in truth.values.items() if name.startswith("pull_off")}
-    return {**truth.values, **torn}, {name: math.inf for name in truth.values if _after(name)}
-
-
-def _musen(truth: Truth, _: float) -> Prediction | None:
-    a0, least = jkr.ZERO_LOAD_RADIUS, jkr.ZERO_LOAD_RADIUS * 2 ** (-2 / 3)
-    apart = jkr.ContactState(0.0, 0.0, math.nan)
-    return _jkr_states(
-        truth,
-        pull_off=jkr.ContactState(truth.tabor * least**2, jkr.JKR_PULL_OFF, least),
-        zero_load=jkr.ContactState(truth.tabor * a0**2, 0.0, a0),
-        jump_on=apart,
-        jump_off=apart,
-    )
-
-
-def _jkr(truth: Truth, _: float) -> Prediction | None:
-    mu = truth.tabor
-    return _jkr_states(
-        truth,
-        pull_off=jkr.jkr_pull_off(mu),
-        zero_load=jkr.jkr_zero_load(mu),
-        jump_on=jkr.ContactState(0.0, 0.0, math.nan),
-        jump_on_landing=jkr.jkr_zero_approach(mu),
-        jump_off=jkr.jkr_jump_off(mu),
-    )
-
-
-def _jkr_states(truth: Truth, **states: jkr.ContactState) -> Prediction | None:
-    if not truth.problem.in_atlas:
+def _torn(problem: Problem, _: float) -> Prediction | None:
+    values = right(problem)
+    if "jump_off_load" not in values:
         return None
-    return {f"{name}_{kind}": value for name, state in states.items() for kind, value in vars(state).items()}, {}
+    torn = {name.replace("pull_off", "jump_off"): v for name, v in values.items() if name.startswith("pull_off")}
+    return values | torn, {name: math.inf for name in values if _open(name)}
+
+
+APART = jkr.ContactState(0.0, 0.0, math.nan)  # JKR's surfaces jump on when they touch
+
+
+def _musen(tabor: float) -> Mapping[str, jkr.ContactState]:
+    a = jkr.ZERO_LOAD_RADIUS
+    least = a * 2 ** (-2 / 3)
+    states = jkr.ContactState(tabor * least**2, jkr.JKR_PULL_OFF, least), jkr.ContactState(tabor * a**2, 0.0, a)
+    return {"pull_off": states[0], "zero_load": states[1], "jump_on": APART, "jump_off": APART}
+
+
+def _jkr(tabor: float) -> Mapping[str, jkr.ContactState]:
+    own = {"pull_off": jkr.jkr_pull_off, "zero_load": jkr.jkr_zero_load, "jump_off": jkr.jkr_jump_off}
+    own["jump_on_landing"] = jkr.jkr_zero_approach
+    return {"jump_on": APART, **{name: state(tabor) for name, state in own.items()}}
+
+
+def _theory(states: Callable[[float], Mapping[str, jkr.ContactState]], problem: Problem, _: float) -> Prediction | None:
+    if not problem.in_atlas:
+        return None
+    known = states(problem.scene.tabor).items()
+    return {f"{name}_{kind}": value for name, state in known for kind, value in vars(state).items()}, {}

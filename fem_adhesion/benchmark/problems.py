@@ -13,17 +13,20 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
+import numpy as np
+
 from fem_adhesion.common.words import part_in
 from fem_adhesion.convergence import trace
 from fem_adhesion.registry import PARTS
 from fem_adhesion.scene import HALF_SPACE, Scene
 from halfspace import atlas
 from halfspace.equilibrium.contact import OBSERVABLES
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import EVENTS
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import Units
-from halfspace.values import Estimate, States
+from halfspace.values import Array, Estimate
 
 NAMED = re.compile(r"([a-z][a-z-]*[a-z])((?:-[\d.]+)*)-([\d.]+)")
 USUAL = (
@@ -32,12 +35,15 @@ USUAL = (
 )
 RTOL = 1e-6  # asked of curves that the atlas does not have: a digit more than most codes give
 RADIUS, SPACING, WORK = 1e-6, 3e-10, 0.05  # m, m, J/m^2: a micrometre of silica or so, for numbers in SI
-STATES = {name: name for name in EVENTS} | {f"{jump}_landing": jump for jump in ("jump_on", "jump_off")}
-KINDS = {f"{state}_{kind}": kind for state in STATES for kind in OBSERVABLES} | {
-    "energy": "energy",
-    "energy_lost": "energy",
+LANDINGS = ("jump_on_landing", "jump_off_landing")  # the states after the jumps
+KINDS = {f"{state}_{kind}": kind for state in (*EVENTS, *LANDINGS) for kind in OBSERVABLES}
+KINDS = {
+    name: kind for name, kind in KINDS.items() if name != "zero_load_load" and not name.endswith("landing_approach")
 }
+KINDS |= {"energy": "energy", "energy_lost": "energy"}
 """Kind of each quantity, which has its unit, by its name."""
+
+PLACES = 1000  # on a curve of the atlas: how events change along it is then right to a thousandth
 
 
 @dataclass(frozen=True)
@@ -64,14 +70,19 @@ class Problem:
         """Our value of each quantity that the curve has."""
         if self.in_atlas:
             return by_atlas(self.scene.tabor)
-        path = trace(self.scene, rtol=RTOL)
-        found = {
-            f"{name}_{kind}": event.estimate(kind)
-            for name, event in path.events.items()
-            if name in EVENTS
-            for kind in OBSERVABLES
-        }
-        return _known(found | {"energy": path.energy})
+        events = [(name, event) for name, event in self._path.events.items() if name in EVENTS]
+        found = {f"{name}_{kind}": event.estimate(kind) for name, event in events for kind in OBSERVABLES}
+        return _known(found | {"energy": self._path.energy})
+
+    @cached_property
+    def curve(self) -> Array:
+        """The states (4, n) along the curve from separation to compression, each its `OBSERVABLES`."""
+        states = atlas.curve(self.scene.tabor).states(PLACES) if self.in_atlas else self._path
+        return np.array([getattr(states, kind) for kind in OBSERVABLES])
+
+    @cached_property
+    def _path(self) -> EquilibriumPath:
+        return trace(self.scene, rtol=RTOL)
 
 
 def named(name: str) -> Problem:
@@ -91,18 +102,37 @@ def named(name: str) -> Problem:
 def by_atlas(tabor: float) -> dict[str, Estimate]:
     """Values of a paraboloid on the half-space under the 3-9 law; none of jumps that do not exist."""
     on, off = atlas.jump_on(tabor), atlas.jump_off(tabor)
-    states = {"pull_off": atlas.pull_off(tabor), "zero_load": atlas.zero_load(tabor)}
-    states |= {"jump_on": on.take_off, "jump_off": off.take_off}
-    states |= {"jump_on_landing": on.landing, "jump_off_landing": off.landing}
-    found = {f"{name}_{kind}": _number(state, kind) for name, state in states.items() for kind in OBSERVABLES}
+    states = (atlas.pull_off(tabor), on.take_off, off.take_off, atlas.zero_load(tabor), on.landing, off.landing)
+    found = {
+        f"{name}_{kind}": Estimate(float(getattr(state, kind)), float(getattr(state, f"{kind}_error")))
+        for name, state in zip((*EVENTS, *LANDINGS), states, strict=True)
+        for kind in OBSERVABLES
+    }
     for name, energy in (("energy", atlas.energy_released(tabor)), ("energy_lost", atlas.energy_lost(tabor))):
         found[name] = Estimate(float(energy.energy), float(energy.energy_error))
     return _known(found)
 
 
-def _number(state: States, kind: str) -> Estimate:
-    return Estimate(float(getattr(state, kind)), float(getattr(state, f"{kind}_error")))
-
-
 def _known(values: Mapping[str, Estimate]) -> dict[str, Estimate]:
-    return {name: value for name, value in values.items() if not math.isnan(value.value)}
+    return {name: values[name] for name in KINDS if name in values and not math.isnan(values[name].value)}
+
+
+def events_along(curve: Array) -> dict[str, Array]:
+    """States (4,) of the events of a curve (4, n), between its points by parabolas; no jumps if it does not fold."""
+    approach, load = curve[:2]
+    off = int(np.argmax(np.maximum.accumulate(approach) - approach))
+    on = int(np.argmax(approach[: off + 1]))
+    turns = {"pull_off": (load, int(np.argmin(load)))}
+    if on < off:
+        turns |= {"jump_on": (approach, on), "jump_off": (approach, off)}
+    found = dict[str, Array]()
+    for name, (along, i) in turns.items():
+        if 0 < i < approach.size - 1:
+            below, here, above = curve[:, i - 1 : i + 2].T
+            bend = along[i - 1] - 2 * along[i] + along[i + 1]
+            t = (along[i - 1] - along[i + 1]) / (2 * bend) if bend else 0.0
+            found[name] = here + t * (above - below) / 2 + t**2 * (above - 2 * here + below) / 2
+    if (signs := np.flatnonzero((load[:-1] < 0) & (load[1:] >= 0))).size:
+        i = signs[-1]
+        found["zero_load"] = curve[:, i] + load[i] / (load[i] - load[i + 1]) * (curve[:, i + 1] - curve[:, i])
+    return found

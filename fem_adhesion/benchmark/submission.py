@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from fem_adhesion.benchmark.problems import KINDS, Problem, named
+from fem_adhesion.benchmark.problems import KINDS, Problem, events_along, named
 from fem_adhesion.common.numbers import PREFIXES
 from fem_adhesion.common.record import UNITS
 from halfspace.errors import InputError
@@ -19,8 +19,8 @@ from halfspace.values import Array
 
 NUMBERS, CURVES = ("problem", "quantity", "value"), ("problem", "approach", "load")
 SIZES = {name.replace("µ", "u"): 10.0**exponent for exponent, name in PREFIXES.items()} | {"µ": 1e-6}
-OTHER = {"pi R dgamma": ("R dgamma", math.pi)}
 LEAP = 8.0  # usual changes of the load from row to row above which a change is a jump
+Rows = Iterable[tuple[str, Mapping[str, str]]]  # where each stands, and its cells
 
 
 @dataclass(frozen=True)
@@ -35,37 +35,44 @@ class Number:
 
 @dataclass(frozen=True)
 class Submitted:
-    """What they say of a problem: numbers, and the curve (n, 2) of approach and load if it was one."""
+    """What they say of a problem: numbers, and the curve (2, n) of approach and load if it was one."""
 
     problem: Problem
     numbers: Sequence[Number]
     curve: Array | None = None
 
 
-def read(path: Path) -> list[Submitted]:
-    """Read a submission; InputError, with the line, if there is something that cannot be understood."""
+def read(path: Path, problem: Callable[[str], Problem] = named) -> list[Submitted]:
+    """Read a submission; InputError, with the line, if there is something that cannot be understood.
+
+    Rows without a value, as the templates have them, are left out. `problem` gives that of a name.
+    """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
-            lines = csv.DictReader((line for line in file if line.strip()), skipinitialspace=True, restval="")
-            header, rows = [name.strip() for name in lines.fieldnames or ()], list(lines)
+            lines = csv.DictReader(file, skipinitialspace=True, restval="")
+            header = [name.strip() for name in lines.fieldnames or ()]
+            rows = [(f"{path}, line {lines.line_num}", _stripped(row)) for row in lines]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path} cannot be read ({error}), limit: a CSV file in UTF-8; give one") from error
-    form = next((form for form in (NUMBERS, CURVES) if set(form) <= set(header)), None)
-    if form is None or not rows:
-        limit = f"a header {','.join(NUMBERS)} or {','.join(CURVES)} and rows below it"
-        raise InputError(
-            f"{path} has the columns {','.join(header)} and {len(rows)} rows, limit: {limit}; see --problems"
-        )
+    form = next((form for form in (NUMBERS, CURVES) if set(form) <= set(header)), NUMBERS)
     grouped = dict[str, list[tuple[str, Mapping[str, str]]]]()
-    for number, row in enumerate(rows, 2):
-        where = f"{path}, row {number}"
-        kept = {str(name).strip(): str(text).strip() for name, text in row.items() if name}
-        grouped.setdefault(kept["problem"], []).append((where, kept))
+    for where, row in rows:
+        if row.get(form[-1]):
+            grouped.setdefault(row.get("problem", ""), []).append((where, row))
+    if not grouped:
+        raise InputError(
+            f"{path} has the columns {','.join(header)} and no row with a value, limit: a header {','.join(NUMBERS)} "
+            f"or {','.join(CURVES)} and rows below it; see --problems"
+        )
     read_one = _numbers if form == NUMBERS else _curve
-    return [read_one(named(name), found) for name, found in grouped.items()]
+    return [read_one(problem(name), found) for name, found in grouped.items()]
 
 
-def _numbers(problem: Problem, rows: Iterable[tuple[str, Mapping[str, str]]]) -> Submitted:
+def _stripped(row: Mapping[str, str]) -> dict[str, str]:
+    return {str(name).strip(): str(text).strip() for name, text in row.items() if name}
+
+
+def _numbers(problem: Problem, rows: Rows) -> Submitted:
     found = dict[str, Number]()
     for where, row in rows:
         quantity = re.sub(r"_(?<!contact_)radius$", "_contact_radius", row["quantity"])
@@ -94,54 +101,44 @@ def _float(where: str, name: str, text: str) -> float:
 
 def _size(problem: Problem, kind: str, unit: str, where: str) -> float:
     """Size of a unit in ours."""
-    ours, factor = OTHER.get(unit, (unit, 1.0))
-    if ours in ("", UNITS[kind]):
-        return factor
+    if unit in ("", UNITS[kind]):
+        return 1.0
+    if unit == f"pi {UNITS[kind]}":
+        return math.pi
     si, name = problem.units.si(kind)
     if unit.endswith(name) and unit.removesuffix(name) in SIZES:
         return SIZES[unit.removesuffix(name)] / si
     raise InputError(f"{where}: unit = {unit!r}, limit: {UNITS[kind]} or a multiple of {name}; as {UNITS[kind]}")
 
 
-def _curve(problem: Problem, rows: Iterable[tuple[str, Mapping[str, str]]]) -> Submitted:
+def _curve(problem: Problem, rows: Rows) -> Submitted:
     """Curve with the events that can be read off it."""
-    rows = list(rows)
-    if len(rows) < 8:
-        raise InputError(f"{rows[0][0]}: a curve of {len(rows)} rows, limit: 8; give more points of {problem.name}")
-    columns = [[_float(where, name, row[name]) for where, row in rows] for name in CURVES[1:]]
-    curve = np.array(columns).T
-    return Submitted(problem, list(read_off(*curve.T)), curve)
+    places = list(rows)
+    if len(places) < 8:
+        raise InputError(f"{places[0][0]}: a curve of {len(places)} rows, limit: 8; give more points of {problem.name}")
+    curve = np.array([[_float(where, name, row[name]) for where, row in places] for name in CURVES[1:]])
+    return Submitted(problem, list(read_off(curve)), curve)
 
 
-def read_off(approach: Array, load: Array) -> list[Number]:
+def read_off(curve: Array) -> Iterator[Number]:
     """Events of a curve as it was sampled: on the way in, up to the largest approach, then on the way out.
 
-    The error of each is the distance to the next row. Where the curve turns back on its way, as one that follows the
-    unstable states does, the jumps are its folds, otherwise the places where the load leaps.
+    Where the curve turns back on its way, as one that follows the unstable states does, the jumps are its folds,
+    otherwise the rows after which the load has leapt. The error stated is the change from every other row. How far a
+    leap is from the jump is for the causes to find.
     """
-    turn, step = int(np.argmax(approach)), np.abs(np.diff(approach))
-    least, last = int(np.argmin(load)), load.size - 1
-    beside = load[max(least - 1, 0) : least + 2]
-    places = {"pull_off": least}
-    found = [Number("pull_off_load", float(load[least]), 0.0, float(np.ptp(beside)) / 4)]
-    signs = np.flatnonzero((load[:-1] < 0) != (load[1:] < 0))
-    if signs.size:
-        i = int(signs[-1])
-        part = load[i] / (load[i] - load[i + 1])
-        at = float(approach[i] + part * (approach[i + 1] - approach[i]))
-        found.append(Number("zero_load_approach", at, 0.0, float(step[i]) ** 2))
+    approach, load = curve
+    rise, turn = np.diff(load), int(np.argmax(approach))
+    found, coarse = events_along(curve), events_along(curve[:, ::2])
     drop = np.maximum.accumulate(approach[: turn + 1]) - approach[: turn + 1]
-    rise, usual = np.diff(load), LEAP * float(np.median(np.abs(np.diff(load))))
-    if drop.max(initial=0.0) > 3 * float(np.median(step)):
-        off = int(np.argmax(drop))
-        places |= {"jump_off": off, "jump_on": int(np.argmax(approach[: off + 1]))}
-    else:
-        inwards, outwards = (rise[:turn], rise[turn:]) if turn < last else (rise, rise[:0])
-        if inwards.size and -inwards.min() > usual:
-            places["jump_on"] = int(np.argmin(inwards)) + 1
-        if outwards.size and outwards.max() > usual:
-            places["jump_off"] = turn + int(np.argmax(outwards)) + 1
-    for name, i in places.items():
-        error = float(step[max(i - 1, 0) : i + 1].max(initial=0.0))
-        found.append(Number(f"{name}_approach", float(approach[i]), 0.0, error))
-    return found
+    if not drop.max() > 3 * np.median(np.abs(np.diff(approach))):  # on the way out only what leaps is a jump
+        found = {name: state for name, state in found.items() if not name.startswith("jump")}
+        usual = LEAP * float(np.median(np.abs(rise)))
+        for name, leaps, first in (("jump_on", -rise[:turn], 0), ("jump_off", rise[turn:], turn)):
+            if leaps.size and leaps.max() > usual:
+                found[name] = coarse[name] = curve[:, first + int(np.argmax(leaps)) + 1]
+    for name, state in found.items():
+        errors = np.abs(state - coarse.get(name, 0.0))
+        for kind, value, error in zip(CURVES[1:], state, errors, strict=True):
+            if kind == "approach" or name == "pull_off":
+                yield Number(f"{name}_{kind}", float(value), 0.0, float(error))

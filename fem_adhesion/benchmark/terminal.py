@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import json
+import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from string import Template
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -13,49 +14,37 @@ from fem_adhesion.benchmark.causes import REMEDIES
 from fem_adhesion.benchmark.problems import KINDS, Problem
 from fem_adhesion.benchmark.study import Diagnosis, Fit, Row
 from fem_adhesion.benchmark.submission import CURVES, NUMBERS
-from fem_adhesion.common.numbers import listed, with_error
+from fem_adhesion.common.numbers import digits, with_error
+from fem_adhesion.common.page import data_rows, data_text
 from fem_adhesion.common.record import UNITS
 from fem_adhesion.common.terminal import Column, Fitted, Prose
-from fem_adhesion.registry import record_of, words_of
+from fem_adhesion.registry import name_of
+from halfspace.values import Estimate
 
 SHOWN = ("approach", "load", "contact_radius", "energy")
 DIGITS = 9  # significant, at most, of our values
-DEFINITIONS = """\
-Units: R is the equivalent radius, E* the contact modulus, dgamma the work of adhesion, eps the spacing at which the
-surfaces are in equilibrium, beta = (R^2 dgamma/E*)^(1/3); the Tabor parameter is (R dgamma^2/(E*^2 eps^3))^(1/3).
-
-Approach: positive when pressed together, zero where the undeformed surfaces are eps apart. Load: positive in
-compression. Central gap: h/eps - 1 on the axis. Contact radius: where h/eps = 3^(1/6), the largest tension of the 3-9
-law. pull_off: the least load. jump_on, jump_off: the folds in approach that fixed grips meet coming from separation
-and from contact; the landings are the states after these jumps. zero_load: contact under no load. energy: released
-from far separation to zero approach in contact. energy_lost: in a cycle under fixed grips.
-"""
 
 
 def report(found: Diagnosis) -> RenderableType:
     """Everything for the terminal."""
-    return Group(
-        *(
-            _table(one.problem.name, [row for row in found.rows if row.problem == one.problem.name])
-            for one in found.submitted
-        ),
-        Prose(
-            "In brackets: error of our last digit. Deviation: of approaches and gaps in parts of eps and the range of "
-            "all events, of others in parts of our value. A number agrees if it does within its last digit, the error "
-            "stated and our bar."
-        ),
-        Text(),
-        *map(Prose, verdict(found)),
+    tables = [_table(name, [row for row in found.rows if row.problem == name]) for name in found.problems]
+    brackets = Prose(
+        "In brackets: error of our last digit. Deviation: of approaches and gaps in parts of eps and the range of "
+        "all events, of others in parts of our value. A number agrees if it does within its last digit, the error "
+        "stated and our bar."
     )
+    return Group(*tables, brackets, Text(), *map(Prose, verdict(found)))
 
 
 def _table(problem: str, rows: Sequence[Row]) -> Fitted:
+    known = [not math.isnan(row.ours) for row in rows]
+    ours = [with_error(Estimate(row.ours, row.bar), digits=DIGITS) for row in rows]
     columns = [
-        Column("quantity", [row.number.quantity.replace("_", " ") for row in rows], words=True),
-        Column("theirs", [f"{row.number.value:.{DIGITS}g}" for row in rows]),
-        Column("ours", [with_error(row.ours, digits=DIGITS) if row.ours else "-" for row in rows]),
-        Column("deviation", [f"{row.deviation:.1e}" if row.ours else "-" for row in rows]),
-        Column("digits", [f"{row.digits:.1f}" if row.ours else "-" for row in rows]),
+        Column("quantity", [row.quantity.replace("_", " ") for row in rows], words=True),
+        Column("theirs", [f"{row.theirs:.{DIGITS}g}" for row in rows]),
+        Column("ours", [text if has else "-" for text, has in zip(ours, known, strict=True)]),
+        Column("deviation", [f"{row.deviation:.1e}" if has else "-" for row, has in zip(rows, known, strict=True)]),
+        Column("digits", [f"{row.digits:.1f}" if has else "-" for row, has in zip(rows, known, strict=True)]),
         Column("verdict", [row.verdict for row in rows], words=True),
     ]
     styles = ["" if row.verdict == "agrees" else "yellow" for row in rows]
@@ -63,45 +52,45 @@ def _table(problem: str, rows: Sequence[Row]) -> Fitted:
 
 
 def verdict(found: Diagnosis) -> Iterator[str]:
-    """Cause, what fits alike, and the remedies."""
-    fits = {fit.cause: fit for fit in found.fits}
-    digits = [row.digits for row in found.rows if row.ours]
-    if found.cause == "sound":
-        yield f"cause: sound, to {min(digits):.1f} to {max(digits):.1f} digits"
-    else:
-        yield f"cause: {' or '.join(found.causes)}" + (", which fit alike" if len(found.causes) > 1 else "")
-    for cause in found.causes:
-        if cause in fits and cause != "sound":
-            yield f"{cause}: {_told(fits[cause])}. {REMEDIES[cause]}"
-        else:
-            yield REMEDIES[cause]
-    if others := [fit.cause for fit in found.fits if fit.cause not in found.causes][:2]:
-        yield f"next after {'it' if len(found.causes) == 1 else 'them'}: {listed(others)}"
+    """Cause, what fits alike, the remedies, and the causes of the problems alone where these differ."""
+    causes, fits = found.whole.causes, {fit.cause: fit for fit in found.whole.fits}
+    right = [row.digits for row in found.rows if not math.isnan(row.ours)]
+    span = f", to {min(right):.1f} to {max(right):.1f} digits" if found.cause == "sound" else ""
+    yield f"cause: {' or '.join(causes)}{span}{', which fit alike' if len(causes) > 1 else ''}"
+    for cause in causes:
+        fitted = f"{cause}: {_told(fits[cause])}. " if cause in fits and cause != "sound" else ""
+        yield fitted + REMEDIES[cause]
+    if len({tuple(own.causes) for own in found.problems.values()} | {tuple(causes)}) > 1:
+        alone = [f"{name} {' or '.join(own.causes)}" for name, own in found.problems.items()]
+        yield f"Each problem alone: {', '.join(alone)}."
 
 
 def _told(fit: Fit) -> str:
     sizes = " and ".join(f"{size:.3g}" for size in fit.parameters)
-    return f"{fit.what}{f' = {sizes}' if sizes else ''}; leaves deviations of {fit.noise:.1g}"
+    return f"{fit.what} {sizes}".strip() + f"; leaves deviations of {fit.noise:.1g}"
 
 
 def write(problems: Sequence[Problem], directory: Path) -> None:
-    """Write a sheet and a template of numbers for each problem, and a template of a curve."""
+    """Write a sheet for each problem, a template of numbers for all, and a template of a curve."""
+    words = {row["name"]: row["words"] for row in data_rows("benchmark", "statements.csv")}
+    sheet = Template(data_text("benchmark", "sheet.md.template"))
     for problem in problems:
-        values, scene, units = problem.values, problem.scene, problem.units
-        sizes = [f"{UNITS[kind]} = {size:.10g} {si}" for kind in SHOWN for size, si in [units.si(kind)]]
-        lines = [
-            f"# {problem.name}",
-            f"A frictionless contact of a rigid body and this one: Tabor parameter {scene.tabor:g}, profile "
-            f"{words_of(scene.shape)}, law {words_of(scene.law)}, body {json.dumps(record_of(scene.body))}.",
-            DEFINITIONS,
-            f"Numbers in SI are read for R = {units.radius:.10g} m, E* = {units.modulus:.10g} Pa, "
-            f"dgamma = {units.work_of_adhesion:g} J/m^2: {', '.join(sizes)}.",
-            "| quantity | value | error | unit |\n|---|---|---|---|",
-        ]
-        table = [f"| {n} | {v.value:.12g} | {v.error:.1g} | {UNITS[KINDS[n]]} |" for n, v in values.items()]
-        (directory / f"{problem.name}.md").write_text("\n\n".join(lines) + "\n" + "\n".join(table) + "\n", "utf-8")
-        template = [f"{problem.name},{name},,{UNITS[KINDS[name]]}," for name in values]
-        (directory / f"{problem.name}.csv").write_text(
-            "\n".join([",".join((*NUMBERS, "unit", "error")), *template, ""])
+        (body, law), units = (problem.scene.body, problem.scene.law), problem.units
+        table = [f"| {n} | {digits(v)} | {v.error:.1g} | {UNITS[KINDS[n]]} |" for n, v in problem.values.items()]
+        text = sheet.substitute(
+            name=problem.name,
+            bodies=words[name_of(body)].format(**vars(body)),
+            poisson=f"{problem.scene.poisson:g}",
+            tabor=f"{problem.scene.tabor:g}",
+            tension=words[name_of(law)].format(**vars(law), c=getattr(law, "amplitude", 1.0)),
+            radius=f"{units.radius:.10g}",
+            modulus=f"{units.modulus:.10g}",
+            work=f"{units.work_of_adhesion:g}",
+            sizes=", ".join(f"{UNITS[kind]} = {size:.10g} {si}" for kind in SHOWN for size, si in [units.si(kind)]),
+            edge=f"{1 + law.edge_gap:.10g}",
+            table="\n".join(table),
         )
+        (directory / f"{problem.name}.md").write_text(text, "utf-8")
+    lines = [f"{problem.name},{name},,{UNITS[KINDS[name]]}," for problem in problems for name in problem.values]
+    (directory / "numbers.csv").write_text("\n".join([",".join((*NUMBERS, "unit", "error")), *lines, ""]))
     (directory / "curve.csv").write_text(f"{','.join(CURVES)}\n{problems[0].name},,\n")

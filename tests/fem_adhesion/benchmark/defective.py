@@ -121,7 +121,8 @@ def jkr(tabor):
     """JKR's closed forms."""
     states = {"pull_off": closed_forms.jkr_pull_off(tabor), "jump_off": closed_forms.jkr_jump_off(tabor)}
     states["zero_load"] = closed_forms.jkr_zero_load(tabor)
-    return {f"{name}_{kind}": getattr(state, kind) for name, state in states.items() for kind in KINDS}
+    found = {f"{name}_{kind}": getattr(state, kind) for name, state in states.items() for kind in KINDS}
+    return {name: value for name, value in found.items() if name != "zero_load_load"}
 
 
 def hertz_radius(tabor):
