@@ -64,7 +64,7 @@ def _values(text: str) -> Sequence[float]:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Trace the curves or what is left of them, and write the table.
+    """Trace the curves that neither the atlas nor the store has, and write the table.
 
     Returns
     -------
@@ -82,8 +82,12 @@ def run(options: argparse.Namespace) -> int:
     store = open_store(options.resume, study.code(), resume=True, force=None) if options.resume else None
     try:
         with all_written(csv=options.csv) as files, progress_bar() as step:
-            curves = study.run(tabors, asked, store, jobs=options.jobs, dask=options.dask, progress=step)
-            study.write_csv(curves, files["csv"])
+            known = study.by_atlas(tabors, rtol, asked["law"])
+            todo = [tabor for tabor in tabors if tabor not in known]
+            traced = study.run(todo, asked, store, jobs=options.jobs, dask=options.dask, progress=step)
+            found = known | dict(zip(todo, traced, strict=True))
+            curves = [found[tabor] for tabor in tabors]
+            study.write_csv(curves, files["csv"], known)
             if "metadata" in files:
                 write_beside(files["metadata"], options.csv.name, record(tabor=tabors, **asked))
     except KeyboardInterrupt as how:
@@ -96,7 +100,8 @@ def run(options: argparse.Namespace) -> int:
     solved = [curve for curve in curves if not curve.reason]
     folding = sum("jump_on" in curve.events for curve in solved)
     met = f"{sum(not curve.missed for curve in solved)} as accurate as asked, rtol {options.rtol:g}"
-    told = f"{len(solved)} of {len(curves)} curves solved, {folding} fold, {met}"
+    source = f"{len(known)} of them from halfspace.atlas" if known else "none from halfspace.atlas"
+    told = f"{len(solved)} of {len(curves)} curves known, {source}, {folding} fold, {met}"
     print(f"{told}; written: {options.csv}", file=out)
     for curve in failed:
         print(f"fem-adhesion: tabor {curve.tabor:g}: {curve.reason}", file=sys.stderr)
@@ -107,7 +112,8 @@ COMMAND = Command(
     "sweep",
     "trace the curves at many Tabor parameters and write their events as one table",
     "Pull-off, jumps and zero load of many curves on the half-space, the energy set free and the energy lost in a "
-    "cycle, each with its error, on all cores. What is interrupted goes on with --resume. Exits with 1 if a curve "
+    "cycle, each with its error. They are read from the atlas, halfspace.atlas, where that is as accurate as --rtol; "
+    "other curves are solved on all cores, and what is interrupted goes on with --resume. Exits with 1 if a curve "
     "cannot be traced.",
     "--tabor 0.05:50:200 --csv sweep.csv",
     add_options,

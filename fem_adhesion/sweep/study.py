@@ -1,29 +1,60 @@
-"""Many curves on all cores, each kept on disk as soon as it is there, and the table of their numbers."""
+"""Many curves: from the atlas, or solved on all cores and each kept on disk at once, and the table of their numbers."""
 
 from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
 from typing import IO, Any
+
+import numpy as np
 
 from fem_adhesion.common.facts import code_digest, plain
 from fem_adhesion.common.files import Plain, Store
 from fem_adhesion.common.jobs import Kept, solve_all
 from fem_adhesion.common.record import UNITS, column
 from fem_adhesion.registry import record_of
-from halfspace.accuracy.sweep import UNKNOWN, Summary, summary
+from halfspace import atlas
+from halfspace.accuracy.sweep import NUMBERS, UNKNOWN, Summary, summary
+from halfspace.atlas.series import LEAST, MOST
 from halfspace.equilibrium.contact import OBSERVABLES
-from halfspace.equilibrium.events import EVENTS, Event
+from halfspace.equilibrium.events import EVENTS, Event, Tolerance
 from halfspace.errors import InputError
+from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Estimate
 
 
 def code() -> str:
     """Digest of the code that computes a curve."""
     return code_digest(__name__)
+
+
+def by_atlas(tabors: Sequence[float], rtol: float, law: Law) -> dict[float, Summary]:
+    """Curves of the 3-9 law, by Tabor parameter, whose loads and approaches the atlas has as accurately as asked.
+
+    Where its error leaves open whether a curve folds, the curve is not among them.
+    """
+    birth = atlas.birth_of_folds()
+    inside = [tabor for tabor in tabors if law == LENNARD_JONES and LEAST <= tabor <= MOST]
+    inside = [tabor for tabor in inside if abs(tabor - birth.value) > birth.error]
+    mu, found = np.array(inside), dict[float, Summary]()
+    states = {"pull_off": atlas.pull_off(mu), "zero_load": atlas.zero_load(mu)}
+    states |= {"jump_on": atlas.jump_on(mu).take_off, "jump_off": atlas.jump_off(mu).take_off}
+    energies = [
+        [Estimate(*pair) for pair in zip(part.energy.tolist(), part.energy_error.tolist(), strict=True)]
+        for part in (atlas.energy_released(mu), atlas.energy_lost(mu))
+    ]
+    for i, tabor in enumerate(inside):
+        events = {
+            name: Event(name, *(float(getattr(state, number)[i]) for number in NUMBERS))
+            for name, state in states.items()
+            if np.isfinite(state.load[i])
+        }
+        if not Tolerance.on(events, rtol).missed(events):
+            found[tabor] = Summary(tabor, events, energies[0][i], energies[1][i], {})
+    return found
 
 
 def run(
@@ -67,14 +98,15 @@ def _numbers(kept: Mapping[str, Any]) -> dict[str, Any]:
     return {name: math.nan if value is None else value for name, value in kept.items()}
 
 
-def write_csv(curves: Sequence[Summary], file: IO[str]) -> None:
+def write_csv(curves: Sequence[Summary], file: IO[str], known: Collection[float] = ()) -> None:
     """Write a row for each curve: its events' numbers with their errors, units in the names of the columns.
 
-    What does not exist, as the jumps of a curve that does not fold, is left empty. ``missed_rtol`` names what is less
-    accurate than was asked for, ``reason`` tells why a curve could not be traced.
+    What does not exist, as the jumps of a curve that does not fold, is left empty. ``source`` says whether the numbers
+    are from the ``atlas``, whose Tabor parameters are `known`, or a ``solver`` found them; ``missed_rtol`` names what
+    is less accurate than was asked for, ``reason`` tells why a curve could not be traced.
     """
-    rows = [_row(curve) for curve in curves]
-    writer = csv.DictWriter(file, _row(Summary.failed(1.0, "")).keys(), lineterminator="\n")
+    rows = [_row(curve) | {"source": "atlas" if curve.tabor in known else "solver"} for curve in curves]
+    writer = csv.DictWriter(file, [*_row(Summary.failed(1.0, "")), "source"], lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
 

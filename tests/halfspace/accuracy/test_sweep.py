@@ -13,11 +13,13 @@ from fem_adhesion import cli
 from fem_adhesion.common.files import open_store
 from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.sweep import study
+from halfspace import atlas
 from halfspace.accuracy import sweep as sweeping
 from halfspace.accuracy.sweep import NUMBERS, UNKNOWN, Summary, summary
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Morse
+from halfspace.values import Estimate
 
 TABORS = (2.0, 0.3, 1.0)  # of which the second does not fold
 RTOL = 1e-3
@@ -37,6 +39,7 @@ class _Doubled(halfspace.laws.PowerLaw):
         return 2 * super().energy(gap, tabor)
 
 
+ENERGIES = ("energy", "energy_lost")
 UNITS = {"approach": "eps", "load": "R_dgamma", "central_gap": "eps", "contact_radius": "beta"}
 ASKED = {"rtol": RTOL, "to_load": 5.0, "law": LENNARD_JONES}
 
@@ -116,11 +119,33 @@ def test_the_table_has_the_numbers_of_the_sweep(capsys, found):
     assert cli.main(["sweep", "--tabor", *map(str, TABORS), "--rtol", str(RTOL), "--csv", "-", "--jobs", "1"]) == 0
     out = capsys.readouterr()
     rows = rows_of(out.out)
-    assert "3 of 3 curves solved, 2 fold, 3 as accurate as asked, rtol 0.001; written: -" in out.err
+    told = "3 of 3 curves known, 3 of them from halfspace.atlas, 2 fold, 3 as accurate as asked, rtol 0.001; written: -"
+    assert told in out.err
     for i, row in enumerate(rows):
         assert float(row["tabor"]) == TABORS[i]
+        assert row["source"] == "atlas"
+        energies = (Estimate(float(row[f"{e}_R_dgamma_eps"]), float(row[f"{e}_error_R_dgamma_eps"])) for e in ENERGIES)
+        for number, name in zip(energies, ENERGIES, strict=True):
+            assert number.agrees(Estimate(getattr(found, name)[i], getattr(found, f"{name}_error")[i]))
+        for name, series in found.events.items():
+            for number, unit in UNITS.items():
+                texts = [row[f"{name}_{column}_{unit}"] for column in (number, f"{number}_error")]
+                known = Estimate(getattr(series, number)[i], getattr(series, f"{number}_error")[i])
+                assert (texts == ["", ""]) == bool(np.isnan(known.value))
+                assert texts == ["", ""] or Estimate(*map(float, texts)).agrees(known)
+
+
+def test_what_the_atlas_lacks_is_solved(capsys):
+    """Beyond it, and where it cannot tell whether a curve folds: the solver's own numbers."""
+    tabors = (0.005, atlas.birth_of_folds().value, 2.0)
+    assert cli.main(["sweep", "--tabor", *map(repr, tabors), "--rtol", "1e-3", "--csv", "-", "--jobs", "1"]) == 0
+    out = capsys.readouterr()
+    assert "1 of them from halfspace.atlas" in out.err
+    assert study.by_atlas([2.0], 1e-12, LENNARD_JONES) == {}
+    rows, found = rows_of(out.out), halfspace.sweep(tabors, rtol=RTOL)
+    assert [row["source"] for row in rows] == ["solver", "solver", "atlas"]
+    for i, row in enumerate(rows[:2]):
         assert float(row["energy_R_dgamma_eps"]) == found.energy[i]
-        assert float(row["energy_lost_error_R_dgamma_eps"]) == found.energy_lost_error[i]
         for name, series in found.events.items():
             for number, unit in UNITS.items():
                 for column, values in ((number, number), (f"{number}_error", f"{number}_error")):
@@ -198,12 +223,12 @@ def test_a_curve_whose_worker_died_is_tried_again(monkeypatch, tmp_path):
 
 
 def test_the_exit_code_says_that_a_curve_is_missing(monkeypatch, capsys, tmp_path):
-    lost = Summary(2.0, {}, UNKNOWN, UNKNOWN, {}, "it ends here")
+    lost = Summary(0.002, {}, UNKNOWN, UNKNOWN, {}, "it ends here")
     monkeypatch.setattr(study, "run", lambda *_, **__: [lost])
     table = tmp_path / "table.csv"
-    assert cli.main(["sweep", "--tabor", "2", "--csv", str(table)]) == 1
+    assert cli.main(["sweep", "--tabor", "0.002", "--csv", str(table)]) == 1
     out = capsys.readouterr()
-    assert out.err == "fem-adhesion: tabor 2: it ends here\n"
-    assert out.out.startswith("0 of 1 curves solved")
+    assert out.err == "fem-adhesion: tabor 0.002: it ends here\n"
+    assert out.out.startswith("0 of 1 curves known, none from halfspace.atlas")
     (row,) = rows_of(table.read_text())
-    assert (row["tabor"], row["reason"], row["pull_off_load_R_dgamma"]) == ("2.0", "it ends here", "")
+    assert (row["tabor"], row["reason"], row["pull_off_load_R_dgamma"]) == ("0.002", "it ends here", "")
