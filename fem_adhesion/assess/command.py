@@ -27,6 +27,8 @@ def add_options(command: Parser) -> None:
     base = "whether the base holds the sample or carries it without friction; bonded unless given"
     sample.add_argument("--foundation", choices=("bonded", "sliding"), help=base)
     results = command.add_argument_group("results")
+    digits = "of the numbers shown: 4 at most, or all with the errors of the last ones; files have all"
+    results.add_argument("--digits", choices=("4", "all"), default="4", help=digits)
     results.add_argument(
         "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
     )
@@ -38,6 +40,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.assess import figure, terminal
     from fem_adhesion.assess.study import assess
     from fem_adhesion.common import style
+    from fem_adhesion.common.numbers import DIGITS
 
     inputs = _inputs(options)
     form = style.require_suffix(options.plot) if options.plot else ""
@@ -48,7 +51,9 @@ def run(options: argparse.Namespace) -> int:
             json.dump(terminal.record(assessment), files["json"], indent=1, allow_nan=False)
         if "plot" in files:
             style.write(lambda: figure.draw(assessment), files["plot"], form)
-        report = terminal.report(assessment)  # before the files take their places
+        report = terminal.report(
+            assessment, DIGITS if options.digits == "all" else terminal.SHOWN
+        )  # before the files take their places
     console_beside(options.json).print(report)
     return AGREE
 

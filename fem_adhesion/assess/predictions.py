@@ -25,20 +25,21 @@ from halfspace.values import Array, Estimate
 MEASURES: Mapping[str, tuple[str, float]] = {
     "pull_off_force": ("pull-off force", 3e-5),
     "pull_off_radius": ("contact radius at pull-off", 1e-4),
-    "zero_load_radius": ("contact radius, no load", 1e-4),
-    "jump_on_separation": ("separation, jump on", 1e-2),
-    "jump_on_base": ("base, jump on", 1e-2),
-    "jump_off_separation": ("separation, jump off", 3e-4),
-    "jump_off_base": ("base, jump off", 3e-4),
+    "zero_load_radius": ("contact radius at zero load", 1e-4),
+    "jump_on_separation": ("separation at jump-on", 1e-2),
+    "jump_on_base": ("base position at jump-on", 1e-2),
+    "jump_off_separation": ("separation at jump-off", 3e-4),
+    "jump_off_base": ("base position at jump-off", 3e-4),
     "energy_lost": ("energy lost per cycle", 5e-4),
 }
-"""Quantities in words, and the relative distance there of JKR's theory with the reach of the attraction from the
+"""Quantities in words, and the relative distance there of JKR's theory with the range of the attraction from the
 half-space at the Tabor parameter 300, the last that is computed; it falls beyond, the contact's as mu^-1.7."""
 
 QUANTITIES = tuple(MEASURES)
 WORDS = {name: words for name, (words, _) in MEASURES.items()}
 IN_CONTACT = ("pull_off_force", "pull_off_radius", "zero_load_radius", "jump_off_separation", "jump_off_base")
 ON_LAYER = "thin sample"
+ATTRACTING = "JKR with attraction"
 RADII = ("pull_off_radius", "zero_load_radius")
 POSITIONS = (("jump_on_separation", "jump_off_separation"), ("jump_on_base", "jump_off_base"))  # along two axes
 
@@ -188,7 +189,7 @@ MEASURED = {"force": "load", "radius": "radius", "separation": "approach", "base
 
 def large_tabor(tabor: float, stiffness: float, units: Units) -> Prediction:
     """JKR's theory with the reach of the attraction, its errors being the distance from the truth: tabor >= 300."""
-    read, part = closed("JKR with reach", theories.jkr_with_reach, tabor, stiffness, units), _remaining(tabor)
+    read, part = closed(ATTRACTING, theories.jkr_with_reach, tabor, stiffness, units), _remaining(tabor)
     return _widened(read, {name: 1.0 if "jump_on" in name else part for name in QUANTITIES})
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Quantity
+from fem_adhesion.assess.predictions import ATTRACTING, POSITIONS, RADII, WORDS, Quantity
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.spread import Spread
 from fem_adhesion.assess.study import Assessment
@@ -17,33 +17,72 @@ from fem_adhesion.assess.thin_sample import ThinSample
 from fem_adhesion.common import record as common
 from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain
-from fem_adhesion.common.numbers import KINDS, PREFIXES, decade, engineering, exponent_of, sizes_told, with_error
-from fem_adhesion.common.terminal import Column, Fitted, Prose, flow
+from fem_adhesion.common.numbers import (
+    DIGITS,
+    KINDS,
+    PREFIXES,
+    decade,
+    engineering,
+    exponent_of,
+    sizes_told,
+    with_error,
+)
+from fem_adhesion.common.terminal import Column, Fitted, Prose, broken, flow
 from fem_adhesion.registry import record_of, words_of
 from halfspace.laws import LENNARD_JONES
+from halfspace.values import Estimate
 
+SHOWN = 4  # digits of a number: a contact's inputs have no more
+NARROW = 10  # letters of a line of a column's header: four columns and the models' names, framed, fit 80
+TABLES = {
+    "what each model says of the contact": ("pull_off_force", "pull_off_radius", "zero_load_radius", "energy_lost"),
+    "and of its jumps": tuple(name for names in POSITIONS for name in names),
+}
+ANSWER = ("pull_off_force", "jump_on_separation", "jump_off_separation", "energy_lost")
 STANDS = {"bonded": "bonded to its base", "sliding": "sliding on its base"}
 
 
-def report(assessment: Assessment) -> RenderableType:
-    """Everything for the terminal."""
+def report(assessment: Assessment, digits: int = SHOWN) -> RenderableType:
+    """Everything for the terminal, the answer first.
+
+    Numbers have so many significant digits at most, fewer where their errors or spreads leave fewer; `DIGITS` and their
+    errors in brackets if asked for more than `SHOWN`.
+    """
     return Group(
-        *_head(assessment),
+        *_answer(assessment),
         *_spreads(assessment),
-        models_table(assessment),
-        *map(Prose, _legend(assessment)),
+        *models_table(assessment, digits),
+        *map(Prose, _legend(assessment, digits)),
         Text(),
-        *_deviations(assessment),
+        *_deviations(assessment, digits),
         *_thin_sample(assessment.contact, assessment.sample),
-        *(Prose(f"caution: {line}") for line in assessment.cautions),
-        *map(Prose, assessment.verdict),
+        *map(Prose, assessment.verdict[:-1]),
+        Text(),
+        *_head(assessment),
     )
 
 
+def _answer(assessment: Assessment) -> Iterator[RenderableType]:
+    """Which model to trust, its main numbers, why, and what is left out of account."""
+    best = assessment.finite or assessment.half_space
+    yield Prose(assessment.verdict[-1], "bold")
+    for name in ANSWER:
+        if quantity := best.values.get(name):
+            told, spread = engineering(quantity.value, quantity.unit), None
+            if assessment.spreads and (spread := assessment.spreads.quantities.get(name)):
+                told = spread_told(replace(spread, value=quantity.value))
+            yield Prose(f"  {WORDS[name]}: {told}")
+    if not best.values.keys() & {"jump_on_separation", "jump_off_separation"}:
+        yield Prose("  no jumps: the contact follows the apparatus smoothly")
+    half_space = [line for line in assessment.verdict if f": {assessment.half_space.model} off" in line]
+    yield Prose("; ".join([f"why: tabor = {assessment.contact.units.tabor:.4g}, {assessment.regime}", *half_space]))
+    yield from (Prose(f"caution: {line}") for line in assessment.cautions)
+    yield Text()
+
+
 def _head(assessment: Assessment) -> Iterator[RenderableType]:
+    """What the contact is in SI and by its parameters."""
     contact, units = assessment.contact, assessment.contact.units
-    yield Prose(f"regime: {assessment.regime}")
-    yield flow([f"{name} = {value:.4g}" for name, value in assessment.parameters.items()])
     ratios = (f"R/eps = {units.radius_ratio:.4g}", f"beta/R = {units.length / units.radius:.2g}")
     yield flow([*sizes_told(units), *ratios])
     law = (("spacing eps", units.spacing, "m"), ("work of adhesion", units.work_of_adhesion, "J/m^2"))
@@ -56,7 +95,7 @@ def _head(assessment: Assessment) -> Iterator[RenderableType]:
     if contact.thickness and contact.layer:
         h = f"{engineering(contact.thickness, 'm')} = {contact.layer.thickness:.4g} beta"
         yield flow([f"thin sample: h = {h}", STANDS[contact.foundation]], ", ")
-    yield Text()
+    yield flow([f"{name} = {value:.4g}" for name, value in assessment.parameters.items()])
 
 
 def _spreads(assessment: Assessment) -> Iterator[RenderableType]:
@@ -104,7 +143,7 @@ def spread_told(spread: Spread) -> str:
     return f"median {shown(median)}, {shown(low)} to {shown(high)} {unit}{part}"
 
 
-def _legend(assessment: Assessment) -> Iterator[str]:
+def _legend(assessment: Assessment, digits: int) -> Iterator[str]:
     """How to read the table of models; only what stands in it."""
     for model in assessment.models:
         if model.source == "atlas":
@@ -112,22 +151,30 @@ def _legend(assessment: Assessment) -> Iterator[str]:
     shown = {name for model in assessment.models for name in model.values}
     if shown & {name for names in POSITIONS for name in names}:
         yield (
-            "Separation: of the undeformed surfaces where the jump takes off, negative if they overlap. Base: position "
-            "of the cantilever's far end there, zero where the undeformed surfaces would be one spacing apart, "
+            "Separation: of the undeformed surfaces just before the jump, negative if they overlap. Base position: of "
+            "the cantilever's clamped end then, zero where the undeformed surfaces would be one spacing apart, "
             "negative away from the wall."
         )
     if assessment.contact.law != LENNARD_JONES:
         yield "Maugis lambda and the theories with a range of attraction, Maugis-Dugdale and DMT-M, are the 3-9 law's."
     if shown & set(RADII):
         yield contact_radius(assessment)
+    yield "DMT-M: DMT's theory in Maugis's form. Rigid: Bradley's."
+    if assessment.half_space.model == ATTRACTING:
+        yield f"{ATTRACTING}: JKR's theory in contact, and before it the attraction at a distance."
     if assessment.finite and assessment.contact.layer:
         yield "Thin sample: under a rigid sphere; the half-space is as thick as can be."
     elif assessment.finite:
-        yield f"Of the {assessment.finite.model} what is round is held at its mid-plane, {assessment.contact.grip}."
-    yield (
-        "In brackets: error of the last digit, for closed theories that of the reading only. -: not in the model. "
-        "Differences of a position are parts of the spacing and the distance between both jumps, others of the value."
-    )
+        named = assessment.finite.model.capitalize()
+        yield f"{named}: what is round is an elastic hemisphere held at its mid-plane, {assessment.contact.grip}."
+    brackets = "In brackets: error of the last digit, for closed theories that of the reading only."
+    fewer = f"{digits} digits, or as many as are certain; --digits all shows more and the errors."
+    yield f"{brackets if digits > SHOWN else fewer} -: not in the model."
+    if any(name in shown for names in POSITIONS for name in names) and assessment.deviations:
+        yield (
+            "Differences of a separation or base position are in % of the spacing and the distance between both jumps, "
+            "others in % of the value."
+        )
 
 
 def contact_radius(assessment: Assessment) -> str:
@@ -141,18 +188,30 @@ def contact_radius(assessment: Assessment) -> str:
     return f"Contact radius: {'; '.join(said)}."
 
 
-def models_table(assessment: Assessment) -> Fitted:
-    """A line for each quantity, a column for each model."""
-    models, columns = assessment.models, []
-    rows = [name for name in QUANTITIES if any(name in model.values for model in models)]
-    largest = [max((m.values[name] for m in models if name in m.values), key=lambda q: abs(q.value)) for name in rows]
-    scales = [exponent_of(quantity.value) for quantity in largest]
-    for model in models:
-        found = zip((model.values.get(name) for name in rows), scales, strict=True)
-        cells = [with_error(quantity, 10.0**-exponent) if quantity else "-" for quantity, exponent in found]
-        columns.append(Column(model.model, cells))
-    units = [PREFIXES[exponent] + quantity.unit for quantity, exponent in zip(largest, scales, strict=True)]
-    return Fitted([_words(rows), Column("unit", units, words=True), *columns], ["what each model says"])
+def models_table(assessment: Assessment, digits: int = SHOWN) -> Iterator[Fitted]:
+    """A line for each model, a column for each quantity: two tables, which fit 80 columns with all digits."""
+    models = assessment.models
+    for title, names in TABLES.items():
+        columns = [Column("model", [model.model for model in models], words=True)]
+        for name in names:
+            found = [model.values.get(name) for model in models]
+            if known := [quantity for quantity in found if quantity]:
+                largest = max(known, key=lambda quantity: abs(quantity.value))
+                exponent = exponent_of(largest.value)
+                spread = assessment.spreads.quantities.get(name) if assessment.spreads else None
+                least = spread.deviation / 10 if spread and spread.deviation > 0 and digits <= SHOWN else 0.0
+                cells = [_shown(quantity, 10.0**-exponent, digits, least) if quantity else "-" for quantity in found]
+                header = f"{broken(WORDS[name], NARROW)}\n{PREFIXES[exponent]}{largest.unit}"
+                columns.append(Column(header, cells))
+        if columns[1:]:
+            yield Fitted(columns, [title])
+
+
+def _shown(quantity: Quantity, scale: float, digits: int, least: float = 0.0) -> str:
+    """Number to some digits, fewer if its error or a greater one leaves fewer; with the error if there are many."""
+    known = Estimate(quantity.value, max(quantity.error, least))
+    text = with_error(known, scale, digits)
+    return text if digits > SHOWN or not math.isfinite(known.error) else text.partition("(")[0]
 
 
 def _words(quantities: Iterable[str], header: str = "quantity") -> Column:
@@ -160,13 +219,15 @@ def _words(quantities: Iterable[str], header: str = "quantity") -> Column:
     return Column(header, [WORDS.get(name, name) for name in quantities], words=True)
 
 
-def _percents(header: str, parts: Iterable[Quantity | None]) -> Column:
+def _percents(header: str, parts: Iterable[Quantity | None], digits: int = DIGITS) -> Column:
     """Column of parts, in per cent."""
     cells = [with_error(part, 100, USUAL.digits) if part else "-" for part in parts]
+    if digits <= SHOWN:
+        cells = [cell.partition("(")[0] for cell in cells]
     return Column(f"{header}\n%", cells)
 
 
-def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
+def _deviations(assessment: Assessment, digits: int) -> Iterator[RenderableType]:
     """Table of how far the finite bodies are from the half-space, by cause, if that is known."""
     known = [d for d in assessment.deviations if d.profile or d.total]
     if not known:
@@ -177,7 +238,7 @@ def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
         (body, [d.body for d in known]),
         ("both", [d.total for d in known]),
     )
-    columns = [_percents(*cause) for cause in causes if any(cause[1])]
+    columns = [_percents(*cause, digits) for cause in causes if any(cause[1])]
     title = f"difference from the {assessment.half_space.model}, in % of it, by cause"
     yield Fitted([_words(d.quantity for d in known), *columns], [title])
     yield Text()

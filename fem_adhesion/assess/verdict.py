@@ -89,13 +89,13 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
     units = contact.units
     R = units.radius
     wide, far = (half_space.values.get(name) for name in ("zero_load_radius", "jump_on_separation"))
-    deepened = f"it deepens that by more than its first order tells{_premise(contact)}"
+    deepened = f"it raises that by more than its first order tells{_premise(contact)}"
     judged = [
         ("contact radius over R", _over(wide, R), USUAL.contact, "linear elasticity no longer holds"),
         ("strain beta/R", units.length / R, USUAL.strain, "finite strain matters"),
         ("spacing over R", units.spacing / R, USUAL.spacing, "a law between continuous planes is doubtful"),
         ("jump-on distance over R", _over(far, R), USUAL.jump, "the law between planes is doubtful"),
-        ("yield of the attracted layer over the work of adhesion", _yield(contact), USUAL.first_order, deepened),
+        ("stretching of the attracted surface over the work of adhesion", _yield(contact), USUAL.first_order, deepened),
     ]
     if contact.thickness:
         pressed, h = _over(wide, R) ** 2 * R, contact.thickness
@@ -114,7 +114,7 @@ def yielding(contact: Contact) -> Iterator[str]:
     if USUAL.faint <= part <= USUAL.first_order:
         adhesion = contact.units.work_of_adhesion * (1 + part)
         yield (
-            "yield of the attracted layer is left out: to the first order it deepens the work of adhesion by "
+            "stretching of the attracted surface is left out: to the first order it raises the work of adhesion by "
             f"{_percent(part)}, to {adhesion:.4g} J/m^2{_premise(contact)}; give that to include it"
         )
 

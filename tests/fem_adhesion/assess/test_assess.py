@@ -22,7 +22,7 @@ from fem_adhesion.assess.study import assess
 from fem_adhesion.assess.terminal import contact_radius, record, report
 from fem_adhesion.assess.verdict import Distance, cautions, ranked, regime, verdict, yielding
 from fem_adhesion.common.contact import Contact
-from fem_adhesion.common.numbers import KINDS, PREFIXES, engineering, exponent_of, parse, with_error
+from fem_adhesion.common.numbers import DIGITS, KINDS, PREFIXES, engineering, exponent_of, parse, with_error
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
@@ -265,7 +265,7 @@ class Said:
             patch.setattr(study, "assess", lambda *given: found.append(assess(*given)) or found[0])
             patch.setattr("sys.stdout", out)
             patch.delenv("COLUMNS", raising=False)
-            self.code = cli.main([*arguments, "--json", str(self.json), "--plot", str(self.plot)])
+            self.code = cli.main([*arguments, "--json", str(self.json), "--plot", str(self.plot), "--digits", "all"])
             self.text = out.getvalue()
         (self.assessment,) = found
         self.record = json.loads(self.json.read_text())
@@ -296,22 +296,25 @@ def _printed(console_text):
     found, heads, above = {}, [], []
     for row in rows:
         if not row[0]:
-            above = row  # the first of two lines of headings
-        elif row[0] == "quantity":
-            heads, above = above or row, []
+            above.append(row)  # a line of headings but the last
+        elif row[0] in ("quantity", "model"):
+            heads, above = (
+                [" ".join(filter(None, lines)).rpartition(" ") for lines in zip(*above, row, strict=True)],
+                [],
+            )
         else:
-            unit = dict(zip(heads, row, strict=True)).get("unit", "")
-            size = next((10.0**e for e, p in PREFIXES.items() if unit in (p + "m", p + "N", p + "J") and unit), 1.0)
-            for head, cell in zip(heads[1:], row[1:], strict=True):
+            for (head, _, unit), cell in zip(heads[1:], row[1:], strict=True):
                 if number := re.fullmatch(r"(-?[\d.]+)\((\d+)\)", cell):
+                    size = next((10.0**e for e, p in PREFIXES.items() if unit in (p + "m", p + "N", p + "J")), 1.0)
                     last = 10.0 ** -len(number[1].partition(".")[2])
-                    found[row[0], head, "SI" if unit else "%"] = float(number[1]) * size, int(number[2]) * last * size
+                    kind = "%" if unit == "%" else "SI"
+                    found[row[0], head, kind] = float(number[1]) * size, int(number[2]) * last * size
     return found
 
 
 def _shown(assessment, width=150):
     console = Console(width=width, file=io.StringIO())
-    console.print(report(assessment), crop=False)
+    console.print(report(assessment, DIGITS), crop=False)
     return console.file.getvalue()
 
 
@@ -320,7 +323,7 @@ def _check_table(text, assessment):
     printed = _printed(text)
     for model in assessment.models:
         for name, quantity in model.values.items():
-            value, bound = printed.pop((WORDS[name], model.model, "SI"))
+            value, bound = printed.pop((model.model, WORDS[name], "SI"))
             assert abs(value - quantity.value) <= bound * (1 + 1e-9), (model.model, name)
             assert quantity.error <= bound * (1 + 1e-9)
     for deviation in assessment.deviations:
@@ -422,6 +425,19 @@ def test_the_half_space_in_si(silica):
     assert values["energy_lost"].value == pytest.approx(lost * 1e-8 * 0.3e-9, rel=1e-6)
 
 
+def test_the_answer_comes_first_to_four_digits(silica):
+    console = Console(width=80, file=io.StringIO())
+    console.print(report(silica), crop=False)
+    lines = console.file.getvalue().splitlines()
+    force, on = (silica.finite.values[name].value * 1e9 for name in ("pull_off_force", "jump_on_separation"))
+    assert lines[0].startswith("trust the finite sphere")
+    assert lines[1:3] == [f"  pull-off force: {force:.4g} nN", f"  separation at jump-on: {on:.4g} nm"]
+    assert lines[5].startswith("why: tabor = 0.1925, transition between rigid and JKR")
+    assert not re.search(r"\d\(\d+\)", "".join(lines))
+    assert any(line.startswith("│ finite sphere") and f"{force:.4g}" in line for line in lines)
+    assert lines[-1].startswith("Muller")
+
+
 def test_the_theories_stand_where_they_should(silica):
     force = {model.model: model.values["pull_off_force"].value for model in silica.models}
     assert force["JKR"] == pytest.approx(1.5 * np.pi * 1e-8)
@@ -433,11 +449,11 @@ def test_the_theories_stand_where_they_should(silica):
 def test_a_rubber_bead_is_left_to_the_closed_theories(bead):
     units = bead.contact.units
     assert units.tabor > 300
-    assert bead.half_space.model == "JKR with reach"
+    assert bead.half_space.model == "JKR with attraction"
     assert bead.half_space.values["pull_off_force"].value == pytest.approx(1.5 * np.pi * 50e-6 * 0.05, rel=1e-4)
     assert bead.finite is None
     assert any("finite sphere not solved: tabor = 874.3 is outside tabor <= 10" in line for line in bead.cautions)
-    assert bead.verdict[-1] == "the finite body is not known: judge the JKR with reach by the cautions"
+    assert bead.verdict[-1] == "the finite body is not known: judge the JKR with attraction by the cautions"
     deviation = next(d for d in bead.deviations if d.quantity == "pull_off_force")
     sphere = JKRSphere(units.tabor, units.radius_ratio).pull_off().load
     assert deviation.profile.value == pytest.approx(sphere / theories.JKR_PULL_OFF - 1, rel=1e-3)
@@ -526,7 +542,7 @@ def test_the_distance_of_a_model_is_what_it_may_be_at_most():
 def test_a_model_that_lacks_a_quantity_is_not_nearest():
     finite = _model("finite sphere", 1.0)
     lines = _verdict(_model("half-space", 1.5), None, finite, _model("JKR", 1.0, on=None))
-    assert lines[1] == "beside the finite sphere: JKR off by up to 0 %, in pull-off force; has no separation, jump on"
+    assert lines[1] == "beside the finite sphere: JKR off by up to 0 %, in pull-off force; has no separation at jump-on"
     assert "the half-space is nearest, off by up to 50 %" in lines[-1]
     lines = _verdict(_model("half-space", 1.5, on=None), None, finite)
     assert lines[-1] == "trust the finite sphere; no other model has all its quantities"
@@ -554,7 +570,7 @@ def test_the_regime_is_that_of_its_limits(tabor, word):
     [
         ("spacing over R", {"radius": 1e-9, "spacing": 0.2e-9}, {}, "0.2, limit 0.1"),
         ("strain beta/R", {"radius": 1e-9, "modulus": 1e9, "poisson": 0.4999, "spacing": 1e-11}, {}, "0.42, limit 0.2"),
-        ("yield of the attracted layer over the work of adhesion", {"modulus": 5e8}, {}, "0.17, limit 0.1"),
+        ("stretching of the attracted surface over the work of adhesion", {"modulus": 5e8}, {}, "0.17, limit 0.1"),
         ("contact radius over R", {}, {"zero_load_radius": 0.4e-7}, "0.4, limit 0.3"),
         ("jump-on distance over R", {}, {"jump_on_separation": 0.5e-7}, "0.5, limit 0.3"),
     ],
@@ -578,9 +594,9 @@ def test_yield_is_corrected_from_a_thousandth_to_a_tenth(modulus, told):
     assert (1e-3 <= part <= 0.1) == told == bool(lines)
     work = 0.1 * (1 + part)
     assert all(f"by {100 * part:.3g} %, to {work:.4g} J/m^2; give" in line for line in lines)
-    said = [line for line in cautions(contact, Prediction("absurd", {})) if "attracted layer" in line]
+    said = [line for line in cautions(contact, Prediction("absurd", {})) if "attracted surface" in line]
     assert bool(said) == (part > 0.1)
-    assert all("deepens that by more than its first order tells" in line for line in said)
+    assert all("raises that by more than its first order tells" in line for line in said)
 
 
 def test_a_verdict_heeds_the_cautions_that_pass_a_limit(capsys):
@@ -636,7 +652,7 @@ def test_what_holds_for_the_3_9_law_is_said_of_it_alone(silica):
 
 def test_the_contact_radius_says_what_it_is_beside_others(silica, bead):
     """Of a computed curve the state at the largest tension, of a theory its own; only of those that stand there."""
-    assert contact_radius(bead).startswith("Contact radius: of JKR with reach, JKR on the sphere, JKR")
+    assert contact_radius(bead).startswith("Contact radius: of JKR with attraction, JKR on the sphere, JKR")
     assert "1.20094" not in contact_radius(bead)
     by_morse = replace(silica, contact=replace(silica.contact, law=Morse(3)))
     assert f"where the gap is {1 + np.log(2) / 3:.6g} eps" in contact_radius(by_morse)  # 2 e^(-k H) = 1 there
@@ -646,7 +662,7 @@ def test_the_contact_radius_says_what_it_is_beside_others(silica, bead):
 def test_the_legend_explains_only_what_is_shown(silica):
     text = " ".join(_shown(silica).split())
     assert "Separation: of the undeformed surfaces" in text
-    assert "Of the finite sphere what is round is held at its mid-plane, sliding." in text
+    assert "Finite sphere: what is round is an elastic hemisphere held at its mid-plane, sliding." in text
     assert "of half-space, true profile, finite sphere, where the gap is 1.20094 eps, the place of the largest" in text
     assert "of JKR, Maugis-Dugdale, DMT-M, the edge of the theory's own contact" in text
     bare = replace(silica.half_space, values={"pull_off_force": silica.half_space.values["pull_off_force"]})
