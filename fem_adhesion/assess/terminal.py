@@ -55,7 +55,7 @@ def report(assessment: Assessment, digits: int = SHOWN) -> RenderableType:
         *map(Prose, _legend(assessment, digits)),
         Text(),
         *_deviations(assessment, digits),
-        *_thin_sample(assessment.contact, assessment.sample),
+        *_thin_sample(assessment.contact, assessment.sample, digits),
         *map(Prose, assessment.verdict[:-1]),
         Text(),
         *_head(assessment),
@@ -70,7 +70,7 @@ def _answer(assessment: Assessment) -> Iterator[RenderableType]:
         if quantity := best.values.get(name):
             told, spread = engineering(quantity.value, quantity.unit), None
             if assessment.spreads and (spread := assessment.spreads.quantities.get(name)):
-                told = spread_told(replace(spread, value=quantity.value))
+                told = spread_told(replace(spread, value=quantity.value, error=quantity.error))
             yield Prose(f"  {WORDS[name]}: {told}")
     if not best.values.keys() & {"jump_on_separation", "jump_off_separation"}:
         yield Prose("  no jumps: the contact follows the apparatus smoothly")
@@ -129,14 +129,16 @@ def spread_told(spread: Spread) -> str:
     low, median, high = spread.quantiles or (math.nan,) * 3
     value, size = (spread.value, spread.deviation) if spread.linear else (median, (high - low) / 2)
     exponent = exponent_of(max(abs(value), size))
-    decimals = max(0, 1 - decade(size / 10.0**exponent)) if size else USUAL.digits
+    scale = 10.0**-exponent
+    known = -decade(spread.error * scale) if spread.error else DIGITS  # digits that the number itself has
+    decimals = max(0, min(1 - decade(size * scale), known)) if size else USUAL.digits
 
     def shown(number: float) -> str:
-        return f"{number / 10.0**exponent:.{decimals}f}"
+        return f"{number * scale:.{decimals}f}"
 
     unit = f"{PREFIXES[exponent]}{spread.unit}"
     if spread.linear:
-        return f"{shown(value)} +- {shown(size)} {unit}"
+        return f"{shown(value)} +- {shown(size) if float(shown(size)) else f'{size * scale:.1g}'} {unit}"
     if not spread.quantiles:
         return f"{shown(spread.value)} {unit}, spread not known"
     part = f"; only {100 * spread.present:.0f} % of draws have it" if spread.present < 1 else ""
@@ -219,7 +221,7 @@ def _words(quantities: Iterable[str], header: str = "quantity") -> Column:
     return Column(header, [WORDS.get(name, name) for name in quantities], words=True)
 
 
-def _percents(header: str, parts: Iterable[Quantity | None], digits: int = DIGITS) -> Column:
+def _percents(header: str, parts: Iterable[Quantity | None], digits: int) -> Column:
     """Column of parts, in per cent."""
     cells = [with_error(part, 100, USUAL.digits) if part else "-" for part in parts]
     if digits <= SHOWN:
@@ -244,11 +246,11 @@ def _deviations(assessment: Assessment, digits: int) -> Iterator[RenderableType]
     yield Text()
 
 
-def _thin_sample(contact: Contact, sample: ThinSample | None) -> Iterator[RenderableType]:
+def _thin_sample(contact: Contact, sample: ThinSample | None, digits: int) -> Iterator[RenderableType]:
     """What of it the half-space and the series get wrong without adhesion, and which thickness is enough."""
     if sample and contact.thickness:
-        yield indentations_table(sample)
-        until = with_error(sample.hertz_until, digits=USUAL.digits)
+        yield indentations_table(sample, digits)
+        until = _shown(sample.hertz_until, 1.0, min(digits, USUAL.digits))
         reach = (sample.hertz_until.value * contact.thickness) ** 2 / contact.units.radius
         yield Prose(
             "Chi: sqrt(R delta)/h of the indentation delta. Series: Dimitriadis et al. (2002), for chi up to 1. "
@@ -256,28 +258,28 @@ def _thin_sample(contact: Contact, sample: ThinSample | None) -> Iterator[Render
             f"{engineering(reach, 'm')}."
         )
         yield Text()
-        yield enough_table(sample)
+        yield enough_table(sample, digits)
         yield Text()
 
 
-def indentations_table(sample: ThinSample) -> Fitted:
+def indentations_table(sample: ThinSample, digits: int) -> Fitted:
     """Contacts without adhesion, a line each."""
     rows = sample.indentations
     length, force = exponent_of(rows[-1].indentation), exponent_of(rows[-1].force.value)
     columns = [
         Column(f"indentation\n{PREFIXES[length]}m", [f"{row.indentation / 10.0**length:.4g}" for row in rows]),
         Column("chi", [f"{row.chi:.4g}" for row in rows]),
-        Column(f"force\n{PREFIXES[force]}N", [with_error(row.force, 10.0**-force) for row in rows]),
-        _percents("Hertz off", [row.half_space for row in rows]),
-        _percents("series off", [row.series for row in rows]),
+        Column(f"force\n{PREFIXES[force]}N", [_shown(row.force, 10.0**-force, digits) for row in rows]),
+        _percents("Hertz off", [row.half_space for row in rows], digits),
+        _percents("series off", [row.series for row in rows], digits),
     ]
     return Fitted(columns, ["without adhesion on the thin sample, and how far Hertz's theory and the series are off"])
 
 
-def enough_table(sample: ThinSample) -> Fitted:
+def enough_table(sample: ThinSample, digits: int) -> Fitted:
     """Thicknesses from which on the half-space is right, a line each."""
     size = exponent_of(max((row.thickness.value for row in sample.enough if row.thickness), default=1e-6))
-    thicknesses = [with_error(row.thickness, 10.0**-size) if row.thickness else row.note for row in sample.enough]
+    thicknesses = [_shown(row.thickness, 10.0**-size, digits) if row.thickness else row.note for row in sample.enough]
     columns = [
         _words((row.quantity for row in sample.enough), "in"),
         Column(f"thickness\n{PREFIXES[size]}m", thicknesses),

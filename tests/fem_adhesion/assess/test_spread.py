@@ -153,6 +153,10 @@ def test_digits_are_those_that_the_spread_leaves(value, deviation, told):
     assert spread_told(Spread(value, 1e-15, "N", deviation, {}, (), math.nan, True)) == told
 
 
+def test_no_digit_is_shown_that_the_number_has_not():
+    assert spread_told(Spread(3.63346789e-7, 2e-11, "m", 7.5e-12, {}, (), math.nan, True)) == "363.35 +- 0.01 nm"
+
+
 @pytest.mark.parametrize(
     ("tabor", "stiffness"),
     [(0.3, 0.0045), (0.1, 0.1), (2.0, math.inf), (5.0, 0.1), (2.0, 1e-4), (50.0, 0.01), (1.0, 5.0), (0.5, math.inf)],

@@ -19,6 +19,7 @@ from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.terminal import enough_table, indentations_table, report
 from fem_adhesion.assess.thin_sample import hertz_until
 from fem_adhesion.common.contact import Contact
+from fem_adhesion.common.numbers import DIGITS
 from halfspace.elastic import grid
 from halfspace.elastic.layers import Layer, Layers, Stratum, Substrate, surface_compliance
 from halfspace.errors import InputError
@@ -131,13 +132,13 @@ def test_the_sphere_is_traced_on_its_layer(said):
 
 def test_what_is_printed_of_the_sample_is_what_was_found(said):
     sample = said[0].sample
-    text = _text(indentations_table(sample))
+    text = _text(indentations_table(sample, DIGITS))
     for row in sample.indentations:
         cells = _cells(text, f"{row.indentation * 1e9:.4g}")
         found = [float(cell.partition("(")[0]) for cell in cells]
         expected = [row.chi, row.force.value * 1e9, 100 * row.half_space.value, 100 * row.series.value]
         assert found == pytest.approx(expected, rel=2e-3)
-    text = _text(enough_table(sample))
+    text = _text(enough_table(sample, DIGITS))
     for row in sample.enough:
         thickness, worst = _cells(text, WORDS.get(row.quantity, row.quantity))[:2]
         assert float(thickness.partition("(")[0]) == pytest.approx(
