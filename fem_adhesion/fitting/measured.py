@@ -197,6 +197,8 @@ def curve_of(
         force = force * used
     elif used and own:
         force = force * (used / own)
+    if not (np.isfinite(travel).all() and np.isfinite(force).all()):
+        raise InputError(f"{path} has samples that are no finite numbers, limit: none; leave them out")
     parts, notes = _segments(path, travel, labels)
     (x, y), (back, pull) = ((travel[part], force[part]) for part in parts)
     fewest = min(x.size, back.size)
@@ -206,6 +208,8 @@ def curve_of(
         back, pull = back[::-1], pull[::-1]
         notes = (*notes, "The retract is stored against the order of time and was turned round.")
     way = float(np.sign(_level(x[::-1]) - _level(x)))
+    if not way:
+        raise InputError(f"{path}: the {what} stays where it is, limit: an approach; give the travel that moves")
     sign = _sign(path, y, pull)
     if way < 0:
         notes = (*notes, f"The {what} falls towards the sample and was turned round.")

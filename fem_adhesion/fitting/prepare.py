@@ -17,6 +17,7 @@ BEYOND = 5.0  # standard deviations of the noise beyond which a force is a conta
 FLAT = 0.1  # share of a segment that the baseline has at least, and of the slope in contact that it has at most
 APART = 0.05  # share of the baseline next to the contact that is left out, for the attraction before it
 FINEST = 1e-4  # share of the largest force that is no contact's, even where there is no noise
+PERIODS = np.geomspace(200e-9, 600e-9, 250).tolist()  # m, of half the wavelengths of lasers, 400 to 1200 nm
 ROUNDS = 4  # of clipping and of moving the contact, after which neither changes
 RUN = 5  # samples in a row beyond the noise that are a contact, or equal at an extreme force a detector's limit
 MAD = 1.4826  # standard deviation of normal noise in its median absolute deviation
@@ -46,21 +47,22 @@ class Jump:
 
 @dataclass(frozen=True)
 class Baseline:
-    """Force without contact, offset + slope s + curvature s^2, s the travel from the contact.
+    """Force without contact: offset + slope s + curvature s^2 + a wave, s the travel from the contact.
 
     Attributes
     ----------
     offset, slope, curvature : float
         In N, N/m and N/m^2; the curvature is zero where the noise hides it.
+    amplitude, period : float
+        Of the wave in N and m, zero if there is none: light from the sample interferes with that from the cantilever.
+        Its phase follows their distance, so that it stands still in contact.
     """
 
     offset: float
     slope: float
     curvature: float
-
-    def at(self, distance: Array) -> Array:
-        """Force in N at travels in m from the contact, positive beyond it."""
-        return self.offset + distance * (self.slope + distance * self.curvature)
+    amplitude: float
+    period: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -97,6 +99,14 @@ class Prepared(Valued):
     jump_off: Jump | None
     pull_off: float
 
+    @property
+    def told(self) -> tuple[str, ...]:
+        """What was found about the curve, in sentences."""
+        wave = max(self.baseline.values(), key=lambda each: each.amplitude)
+        sizes = f"{engineering(wave.amplitude, 'N')} and a period of {engineering(wave.period, 'm')}"
+        light = f"The baseline has a wave of {sizes}, as light makes that interferes; it was taken off."
+        return (*self.curve.told, *([light] if wave.amplitude else []))
+
 
 def prepare(curve: ForceCurve) -> Prepared:
     """Find baseline, noise, contact and jumps of a curve.
@@ -110,7 +120,7 @@ def prepare(curve: ForceCurve) -> Prepared:
     far = {name: _far(name, curve.travel[way], curve.force[way]) for name, way in ways.items()}
     background = np.empty_like(curve.force)
     for name, way in ways.items():
-        background[way] = far[name].line(curve.travel[way])
+        background[way] = far[name].at(curve.travel[way])
     above = curve.force - background
     left = [above[way][: far[name].end] for name, way in ways.items()]
     noise = float(np.std(np.concatenate(left)))
@@ -127,7 +137,7 @@ def prepare(curve: ForceCurve) -> Prepared:
     off = slice(max(deepest - SMEARED, curve.retract.start), above.size - far["retract"].end + SMEARED)
     return Prepared(
         curve,
-        {name: _at(far[name].line, contact) for name in ways},
+        {name: found.baseline(contact) for name, found in far.items()},
         background,
         noise,
         max(0.0, 1 - (steps / noise) ** 2 / 2) if noise else 0.0,
@@ -140,35 +150,72 @@ def prepare(curve: ForceCurve) -> Prepared:
 
 @dataclass(frozen=True)
 class Far:
-    """The part of a segment that is far from the sample: the line through it, and at which sample it ends."""
+    """The part of a segment that is far from the sample: the line and the wave through it, and where it ends.
+
+    `wave` has the coefficients of sine and cosine in N and the period in m, `end` is a sample, `edge` the travel at
+    which the force leaves the line.
+    """
 
     line: Polynomial
+    wave: tuple[float, float, float]
     end: int
+    edge: float
+
+    def at(self, travel: Array) -> Array:
+        """Force without contact in N at travels in m."""
+        sine, cosine, period = self.wave
+        phase = 2 * np.pi * np.minimum(travel, self.edge) / period
+        return np.asarray(self.line(travel) + sine * np.sin(phase) + cosine * np.cos(phase))
+
+    def baseline(self, contact: float) -> Baseline:
+        """Numbers of the baseline at a contact."""
+        slope = self.line.deriv()
+        sine, cosine, period = self.wave
+        amplitude = float(np.hypot(sine, cosine))
+        numbers = float(self.line(contact)), float(slope(contact)), float(slope.deriv()(contact)) / 2 + 0.0
+        return Baseline(*numbers, amplitude, period if amplitude else 0.0)
 
 
 def _far(name: str, travel: Array, force: Array) -> Far:
-    """Part of a segment, which begins apart, before the force leaves its line for good."""
-    least = int(FLAT * travel.size)
-    line, end = Polynomial([np.median(force[:least])]), 0
-    size = float(np.max(np.abs(force - line(travel[0]))))
-    limit = max(FLAT * size / 2, BEYOND * float(np.std(force[:least])))
+    """Part of a segment, which begins apart, before the force leaves its line for good.
+
+    The search starts from a level and from the drift of the first half; the one that goes farther is right,
+    but not to the end of a segment that is one line in contact.
+    """
+    least, lag = int(FLAT * travel.size), travel.size // 20
+    level, half = float(np.median(force[:least])), travel.size // 2
+    rise, way = (float(np.median(each[lag:half] - each[: half - lag])) for each in (force, travel))
+    drift = rise / way if way else 0.0
+    limit = max(FLAT / 2 * float(np.max(np.abs(force - level))), BEYOND * float(np.std(force[:least])))
+    middle = float(np.median(travel[:least]))
+    found = [_left(travel, force, Polynomial([level - drift * middle, drift]), limit) for drift in (0.0, drift)]
+    line, leaves = max([each for each in found if each[1] < travel.size] or found, key=lambda each: each[1])
+    if leaves == travel.size:
+        raise InputError(_no_contact(name, force - line(travel), limit))
+    end = int((1 - APART) * leaves)
+    if end < least:
+        many = f"{end} of {travel.size} samples are on a line far from the sample"
+        raise InputError(f"no baseline in the {name}: {many}, limit: {least}; begin farther away")
+    return Far(*_waved(travel[:end], force[:end], line), end, float(travel[leaves]))
+
+
+def _left(travel: Array, force: Array, line: Polynomial, limit: float) -> tuple[Polynomial, int]:
+    """Line through the far part and the sample at which the force leaves it, beginning with a line and a limit."""
+    leaves = 0
     for _ in range(ROUNDS):
-        found = _first_run(np.abs(force - line(travel)) > limit)
-        if found is None:
-            raise InputError(_no_contact(name, force - line(travel), limit))
-        end = int((1 - APART) * found)
-        if end < least:
-            many = f"{end} of {travel.size} samples are on a line far from the sample"
-            raise InputError(f"no baseline in the {name}: {many}, limit: {least}; begin farther away")
+        leaves = _first_run(np.abs(force - line(travel)) > limit)
+        end = int((1 - APART) * leaves)
+        if leaves == force.size or end < FLAT * force.size:
+            break
         line, noise = _line(travel[:end], force[:end])
-        limit = max(BEYOND * noise, FINEST * size)
-    return Far(line, end)
+        limit = max(BEYOND * noise, FINEST * float(np.max(np.abs(force - force[0]))))
+    return line, leaves
 
 
 def _require_flat(name: str, far: Far, travel: Array, force: Array) -> None:
     """Refuse a baseline that rises as the force does in contact: it is one."""
-    slope = abs(float(far.line.deriv()(travel[far.end])))
-    steep = float(np.ptp(force[far.end :]) / np.ptp(travel[far.end :]))
+    slope, beyond = abs(float(far.line.deriv()(far.edge))), travel >= far.edge
+    steep = float(np.ptp(force[beyond]) / np.ptp(travel[beyond]))
     if slope > FLAT * steep:
         rises = f"the force changes by {slope:.2g} N/m far from the sample and {steep:.2g} N/m near it"
         raise InputError(f"no baseline in the {name}: {rises}, limit: {FLAT:g} of that; begin farther away")
@@ -183,7 +230,7 @@ def _no_contact(name: str, above: Array, limit: float) -> str:
 
 
 def _line(travel: Array, force: Array) -> tuple[Polynomial, float]:
-    """Line through most samples, a parabola where that takes off more than the noise explains, and their spread."""
+    """Line through most samples, a parabola where the data demand it, and their spread about it."""
     kept = np.ones(force.size, dtype=bool)
     for _ in range(ROUNDS):
         line = Polynomial.fit(travel[kept], force[kept], 1)
@@ -191,31 +238,46 @@ def _line(travel: Array, force: Array) -> tuple[Polynomial, float]:
         kept = off <= BEYOND * MAD * np.median(off)
     bent = Polynomial.fit(travel[kept], force[kept], 2)
     straight, curved = ((force - each(travel))[kept] for each in (line, bent))
-    # A parabola fitted to noise takes off the share of one independent sample; 25 times that by a chance of 1e-6.
-    correlation = max(0.0, float(np.mean(curved[1:] * curved[:-1]) / np.mean(curved**2)))
-    independent = curved.size * (1 - correlation) / (1 + correlation)
-    if np.sum(straight**2) > (1 + BEYOND**2 / independent) * np.sum(curved**2):
-        line, straight = bent, curved
-    return line, float(np.std(straight))
+    return (bent, float(np.std(curved))) if _demanded(straight, curved, 1) else (line, float(np.std(straight)))
 
 
-def _first_run(beyond: Mask) -> int | None:
-    """Index of the first of `RUN` samples in a row that are beyond."""
+def _waved(travel: Array, force: Array, line: Polynomial) -> tuple[Polynomial, tuple[float, float, float]]:
+    """Line with a wave where the data demand one and show it one and a half times; else the line as it was."""
+    span = float(np.ptp(travel))
+    best, found = force - line(travel), (line, (0.0, 0.0, PERIODS[0]))
+    before = best
+    for period in [each for each in PERIODS if 1.5 * each < span]:
+        phase = 2 * np.pi * travel / period
+        columns = np.column_stack([np.ones_like(travel), (travel - travel[0]) / span, np.sin(phase), np.cos(phase)])
+        (offset, slope, sine, cosine), *_ = np.linalg.lstsq(columns, force)
+        rest = force - columns @ [offset, slope, sine, cosine]
+        if np.sum(rest**2) < np.sum(best**2):
+            straight = Polynomial([offset - slope * travel[0] / span, slope / span])
+            best, found = rest, (straight, (float(sine), float(cosine), period))
+    return found if _demanded(before, best, 3) else (line, (0.0, 0.0, PERIODS[0]))
+
+
+def _demanded(before: Array, after: Array, parameters: int) -> bool:
+    """Whether more parameters take off more than they do of noise, whose samples are not independent.
+
+    Each takes off the share of one independent sample, 25 times that by a chance of 1e-6.
+    """
+    correlation = max(0.0, float(np.mean(after[1:] * after[:-1]) / np.mean(after**2)))
+    independent = after.size * (1 - correlation) / (1 + correlation)
+    return bool(np.sum(before**2) > (1 + parameters * BEYOND**2 / independent) * np.sum(after**2))
+
+
+def _first_run(beyond: Mask) -> int:
+    """Index of the first of `RUN` samples in a row that are beyond; the number of samples if there are none."""
     runs = np.flatnonzero(np.convolve(beyond, np.ones(RUN), "valid") == RUN)
-    return int(runs[0]) if runs.size else None
-
-
-def _at(line: Polynomial, contact: float) -> Baseline:
-    """Baseline of a polynomial in the travel."""
-    offset, slope, curvature = (float(line.deriv(order)(contact) if order else line(contact)) for order in range(3))
-    return Baseline(offset, slope, curvature / 2)
+    return int(runs[0]) if runs.size else beyond.size
 
 
 def _require_unsaturated(force: Array, above: Array, noise: float) -> None:
     """Refuse equal forces in a row at the largest or the least force, unless that is the baseline's."""
     for extreme in (force.max(), force.min()):
         at = _first_run(force == extreme)
-        if at is not None and abs(above[at]) > BEYOND * noise:
+        if at < force.size and abs(above[at]) > BEYOND * noise:
             raise InputError(
                 f"the force is saturated: it stays at {engineering(float(extreme), 'N')} from sample {at} on, limit: "
                 f"less than {RUN} equal samples at an extreme; press less or extend the detector's range"
@@ -232,6 +294,8 @@ def _contact(travel: Array, above: Array) -> float:
 def _jump(travel: Array, force: Array, where: slice, steps: float) -> Jump | None:
     """Jump about the steepest rise of the force in a part of the curve, if it stands out of the noise of steps."""
     rises = np.diff(force[where])
+    if not rises.size:  # the force was least where the baseline begins already
+        return None
     steepest = int(np.argmax(rises))
     jumps = rises > max(BEYOND * steps, SETTLED * rises[steepest])
     if not jumps[steepest]:

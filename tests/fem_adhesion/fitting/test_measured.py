@@ -33,9 +33,9 @@ def _loads(base, turn):
     return loads
 
 
-def _made(points=1000, seed=5):
+def _made(far=FAR, points=1000, seed=5):
     """Travel in m and force in N of an approach and of its retract."""
-    base = np.linspace(FAR, NEAR, points)
+    base = np.linspace(far, NEAR, points)
     ranges = ATLAS.branches("base", stiffness=IN_UNITS)
     loads = np.concatenate([_loads(base, ranges["separated"][1]), _loads(base, ranges["contact"][0])[::-1]])
     white = np.random.default_rng(seed).normal(size=2 * points) * NOISE
@@ -123,6 +123,21 @@ def test_preparing_finds_what_was_put_in(plain):
         assert baseline.offset == pytest.approx(factor * OFFSET + SLOPE * found.contact, abs=3 * NOISE)
         assert baseline.slope == pytest.approx(SLOPE, rel=0.05)
         assert baseline.curvature == 0
+
+
+def test_the_wave_of_interfering_light_is_no_noise(written):
+    travel, loaded = _made(far=-3000.0, points=4000)
+    amplitude, period, jump = 0.05 * FORCE, 330e-9, -5 * UNITS.spacing
+    wave = amplitude * np.sin(2 * np.pi * np.minimum(travel, jump) / period + 1.0)
+    flat, found = (prepare(read(written(piezo_m=travel, force_N=force))) for force in (loaded, loaded + wave))
+    assert found.noise == pytest.approx(NOISE, rel=0.2)
+    assert found.jump_on.last == flat.jump_on.last
+    for baseline in found.baseline.values():
+        assert baseline.amplitude == pytest.approx(amplitude, rel=0.05)
+        assert baseline.period == pytest.approx(period, rel=0.02)
+    assert found.background - wave == pytest.approx(flat.background, abs=5 * NOISE)  # in contact too
+    assert "a wave of 250 pN and a period of 33" in found.told[-1]
+    assert not any("wave" in line for line in flat.told)
 
 
 @pytest.mark.parametrize("seed", range(5))
