@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import signal
 import sys
 import threading
@@ -72,6 +73,7 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**{"formatter_class": Help, **settings})
+        self._negative_number_matcher = re.compile(r"-\.?\d")  # -100nm is a value too, for its quantity to refuse
 
     @property
     def version(self) -> str:

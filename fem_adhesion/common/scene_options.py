@@ -37,9 +37,9 @@ def add_contact(command: Parser, *, in_si_only: bool = False) -> None:
     carry = "Quantities carry units; none is guessed."
     spread = " Each may have a standard deviation, as 100+-20nm or 0.30+-0.02: what follows from it is told."
     contact = command.add_argument_group("contact", carry + spread if in_si_only else carry)
-    given, plain, number = "asked for", "", str if in_si_only else float
+    given, plain, number = "required", "", str if in_si_only else float
     if not in_si_only:
-        given = f"asked for with a material, {POISSON:g} unless given with --tabor"
+        given = f"required with a material, {POISSON:g} unless given with --tabor"
         plain = ", with --tabor in R dgamma/eps"
         contact.add_argument("--tabor", type=float, help="Tabor parameter, or a material instead", metavar="MU")
     for name, metavar, text in (
@@ -154,9 +154,9 @@ def given(options: argparse.Namespace, *names: str) -> list[str]:
 
 
 def refuse(options: argparse.Namespace, names: tuple[str, ...], why: str) -> None:
-    """Refuse options that would not be heeded."""
+    """Refuse options that would have no effect."""
     if unheeded := given(options, *names):
-        raise InputError(f"{', '.join(unheeded)} would not be heeded, limit: {why}; leave it out")
+        raise InputError(f"{', '.join(unheeded)} would have no effect, limit: {why}; leave it out")
 
 
 def contact_of(options: argparse.Namespace) -> Contact | None:
@@ -165,11 +165,13 @@ def contact_of(options: argparse.Namespace) -> Contact | None:
     if options.tabor is not None:
         if present:
             raise InputError(
-                f"tabor = {options.tabor:g} with {present[0]}, limit: one of both; leave out --tabor or the material"
+                f"tabor = {options.tabor:g} and {present[0]}, limit: not both; give either --tabor or a material"
             )
         return None
     if not present:
-        raise InputError("tabor = None and no material, limit: one of both; give --tabor 2, say, or --radius 100nm ...")
+        raise InputError(
+            "neither --tabor nor a material, limit: one of them; give --tabor 2, say, or --radius 100nm ..."
+        )
     inputs = inputs_of(options)
     for name in inputs.deviations:
         why = "limit: a value without a standard deviation, which assess alone takes; leave it out"
@@ -189,7 +191,7 @@ def inputs_of(options: argparse.Namespace, **more: Any) -> Inputs:
     if missing:
         raise InputError(f"{', '.join(missing)} missing, limit: a whole material; give it too")
     if len(laws) == 2:
-        raise InputError(f"{' with '.join(laws)}, limit: one of both, as each follows from the other; leave one out")
+        raise InputError(f"{' and '.join(laws)}, limit: not both, as each follows from the other; leave one out")
     if law != LENNARD_JONES:
         refuse(options, ("hamaker",), "the 3-9 law, by whose tail it gives the spacing, and --spacing with others")
     named = {

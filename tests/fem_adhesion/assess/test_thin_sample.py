@@ -222,13 +222,13 @@ def test_positions_are_judged_by_the_distance_between_jumps():
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        (["--foundation", "sliding"], "--foundation would not be heeded, limit: with --thickness"),
+        (["--foundation", "sliding"], "--foundation would have no effect, limit: with --thickness"),
         (["--thickness", "500"], "thickness = 500 has no unit, limit: a multiple of m; write it as 500nm"),
         (["--thickness", "0nm"], "thickness = 0nm is outside 0 < thickness < inf"),
         (["--thickness", "1pm"], "m, 0.01 to 1000 beta; give metres or a unit, as 500nm"),
         (["--thickness", "1m"], "m, 0.01 to 1000 beta; leave it out: it is a half-space"),
-        (["--thickness", "30nm", "--grip", "bonded"], "--grip would not be heeded, limit: without --thickness"),
-        (["--thickness", "30nm", "--counter-radius", "1um"], "--counter-radius would not be heeded, limit: without"),
+        (["--thickness", "30nm", "--grip", "bonded"], "--grip would have no effect, limit: without --thickness"),
+        (["--thickness", "30nm", "--counter-radius", "1um"], "--counter-radius would have no effect, limit: without"),
         (["--thickness", "30nm", "--foundation", "glued"], "invalid choice: 'glued'"),
     ],
 )

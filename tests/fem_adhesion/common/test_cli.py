@@ -219,7 +219,8 @@ MATERIAL = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--w
     [
         ([], "--radius, --modulus, --poisson, --work-of-adhesion, --spacing or --hamaker missing"),
         (MATERIAL, "--spacing or --hamaker missing"),
-        ([*MATERIAL, "--spacing", "1nm", "--hamaker", "1zJ"], "--spacing with --hamaker, limit: one of both"),
+        ([*MATERIAL, "--spacing", "-0.3nm"], "spacing = -0.3nm is outside 0 < spacing < inf"),
+        ([*MATERIAL, "--spacing", "1nm", "--hamaker", "1zJ"], "--spacing and --hamaker, limit: not both"),
         ([*MATERIAL, "--spacing", "1nm", "--counter-poisson", "0.3"], "counter_modulus = None"),
         ([*MATERIAL, "--spacing", "1nm", "--tabor", "1"], "unrecognized arguments: --tabor 1"),
         ([*MATERIAL, "--spacing", "1nm", "--json", "a.svg", "--plot", "other/../a.svg"], "is given for two outputs"),
@@ -227,7 +228,7 @@ MATERIAL = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--w
         ([*MATERIAL, "--hamaker", "1nm"], "hamaker = 1nm has a unit of the wrong kind, limit: a multiple of J"),
         (
             [*MATERIAL, "--spacing", "0.001nm", "--grip", "bonded"],
-            "--grip would not be heeded, limit: tabor <= 10, where a finite sphere is solved, and this is 57.74",
+            "--grip would have no effect, limit: tabor <= 10, where a finite sphere is solved, and this is 57.74",
         ),
     ],
 )

@@ -151,5 +151,5 @@ def test_the_command_solves_by_triangles(tmp_path, capsys):
     for solver in ("fem", "both"):
         line = ["curve", "--tabor", "1", "--kernel", "triangles", "--rtol", "1e-8", "--solver", solver]
         assert cli.main(line) == 2
-    assert "--kernel would not be heeded" in (refused := capsys.readouterr().err)
+    assert "--kernel would have no effect" in (refused := capsys.readouterr().err)
     assert "rtol = 1e-08 by kernel = triangles" in refused
