@@ -34,7 +34,7 @@ def _rows(case):
     return {row.quantity.removeprefix("triangles: "): row for row in case.rows if row.between == TRIANGLES}
 
 
-@pytest.mark.parametrize("tabor", [0.05, 1.0, 10.0])
+@pytest.mark.parametrize("tabor", [0.05, 1.0])
 def test_triangles_agree_with_elements_to_five_digits(tabor):
     rows = _rows(_case(tabor, 1e-5))
     assert list(rows) == (QUANTITIES if tabor > 0.697 else QUANTITIES[:1])
