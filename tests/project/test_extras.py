@@ -51,7 +51,6 @@ def test_a_curve_is_traced_without_the_extra():
     "arguments",
     [
         ["curve", "--tabor", "1"],
-        ["greenwood", "--out", "out"],
         ["report", "--out", "out.html"],
     ],
     ids=lambda arguments: arguments[0],

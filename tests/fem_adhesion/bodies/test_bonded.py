@@ -46,7 +46,7 @@ def williams(poisson):
     return brentq(residual, 0.5, 0.999)
 
 
-@pytest.mark.parametrize("poisson", [0.2, 0.4999])
+@pytest.mark.parametrize("poisson", [0.4999])
 def test_rings_reduce_the_corners_error_by_its_exponent(poisson):
     """What a cell of size h leaves of the energy is as h^(2 s)."""
     values = np.array([pole_compliance(4, poisson, rings) for rings in (1, 2, 3, 6)])
@@ -54,7 +54,7 @@ def test_rings_reduce_the_corners_error_by_its_exponent(poisson):
     assert errors[1:] / errors[:-1] == pytest.approx(0.2 ** (2 * williams(poisson)), rel=0.03)
 
 
-@pytest.mark.parametrize("poisson", [0.3, 0.4999])
+@pytest.mark.parametrize("poisson", [0.4999])
 def test_the_error_falls_with_the_degree_on_fine_contacts(poisson):
     """Rings in a corner cell as thin as the contact's would leave 1e-6."""
     best = pole_compliance(10, poisson, 6, 0.1, 2.2)
@@ -71,7 +71,7 @@ def bonded(tabor, radius_ratio, poisson, *counter):
 
 
 PAIR = 0.4, 0.45, 3.0
-SCENES = [bonded(1.0, 100.0, 0.499), bonded(0.3, 6.0, 0.0), bonded(0.3, 10.0, 0.45, *PAIR)]
+SCENES = [bonded(0.3, 6.0, 0.0), bonded(0.3, 10.0, 0.45, *PAIR)]
 
 
 def named(scene):

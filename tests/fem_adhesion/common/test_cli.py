@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from comparisons import keep
-from whole_runs import COMPARE
 
 from fem_adhesion import cli
 from fem_adhesion.common.files import directory_written_aside, written_aside
@@ -23,23 +22,6 @@ def run(*arguments):
     return subprocess.run(
         [sys.executable, "-m", "fem_adhesion.cli", *arguments], capture_output=True, text=True, check=False
     )
-
-
-@pytest.fixture(scope="module")
-def compared(whole):
-    return whole(COMPARE)
-
-
-def test_the_record_has_all_it_promises(compared):
-    """At 0.5 the curve has no fold, at 2 it has two."""
-    assert compared.code == 0, compared.err
-    assert list((compared / "").iterdir()) == [compared / "result.json"]
-    record = json.loads((compared / "result.json").read_text())
-    assert set(record["versions"]) == {"python", "fem-adhesion", "numpy", "scipy", "scikit-fem"}
-    flat, folded = (set(case["halfspace"]["events"]) for case in record["cases"])
-    assert (flat, folded) == ({"pull_off"}, {"pull_off", "jump_on", "jump_off"})
-    quantities = {row["quantity"] for row in record["cases"][1]["comparison"]}
-    assert {"operator: Hertz", "cross-residual: jump_off", "jump_on central_gap", "energy released"} <= quantities
 
 
 @pytest.mark.parametrize(
@@ -101,28 +83,6 @@ def test_no_command_is_refused():
     assert done.stderr.count("\n") == 1
 
 
-def test_an_interrupt_leaves_no_file(monkeypatch, tmp_path, capsys):
-    def interrupt(*_args, **_kwargs):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(beside, "run", interrupt)
-    assert cli.main(["compare", "--tabor", "0.5", "--json", str(tmp_path / "record.json")]) == 130
-    assert list(tmp_path.iterdir()) == []
-    assert "interrupted; nothing was written" in capsys.readouterr().err
-
-
-def test_a_file_keeps_its_content_until_the_new_is_whole(tmp_path):
-    file = tmp_path / "record.json"
-    file.write_text("old")
-    with pytest.raises(ZeroDivisionError), written_aside(file) as aside:
-        aside.write(f"half {1 / 0}")
-    assert file.read_text() == "old"
-    with written_aside(file) as aside:
-        aside.write("new")
-    assert file.read_text() == "new"
-    assert list(tmp_path.iterdir()) == [file]
-
-
 def test_files_and_directories_have_the_usual_modes(tmp_path):
     with written_aside(tmp_path / "file") as aside, directory_written_aside(tmp_path / "directory") as folder:
         aside.write("new")
@@ -133,7 +93,7 @@ def test_files_and_directories_have_the_usual_modes(tmp_path):
         assert (tmp_path / name).stat().st_mode & 0o777 == mode & ~mask
 
 
-HELPS = [[], ["curve"], ["finite-sphere"], ["report"]]
+HELPS = [[], ["curve"]]
 
 
 @pytest.mark.parametrize("command", HELPS, ids=lambda words: " ".join(words) or "all")

@@ -130,8 +130,9 @@ needs_cluster = pytest.mark.skipif(importlib.util.find_spec("distributed") is No
 
 @needs_cluster
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
-def test_a_scheduler_that_does_not_answer_is_refused_at_once(address):
-    with pytest.raises(InputError, match=f"dask = {address} does not answer within 30 s; "):
+def test_a_scheduler_that_does_not_answer_is_refused_at_once(address, monkeypatch):
+    monkeypatch.setattr(parallel, "PATIENCE", Patience(connection=2))
+    with pytest.raises(InputError, match=f"dask = {address} does not answer within 2 s; "):
         stream(square, [1], dask=address)
 
 

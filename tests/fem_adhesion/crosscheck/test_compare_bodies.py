@@ -105,11 +105,11 @@ def test_operators_and_equations_agree(body):
 
 
 def test_a_bonded_hemisphere_agrees_with_the_weak_form():
-    case = crosscheck.compare(sphere(grip="bonded"), rtol=1e-4, before=())
+    case = crosscheck.compare(hemisphere(0.3, 30.0, grip="bonded"), rtol=1e-4, before=())
     assert case.verdict == "agree"
     assert list(case.solutions) == ["finite elements"]
     assert {row.between for row in case.rows} == {WEAK_FORM}
-    assert len(case.rows) == 22
+    assert len(case.rows) == 10
     for row in case.rows:  # it knows a body with a length better than its budget
         assert row.first.error < row.budget / 5, row.quantity
 

@@ -57,6 +57,12 @@ def real():
     return study.solve(study.Question(Scene(UNITS.tabor), rtol=1e-4, units=UNITS, stiffness=0.2 / UNITS.stiffness))
 
 
+@pytest.fixture(scope="module")
+def soft():
+    units = Units(100e-9, 74.14e9, 0.063, 0.143e-9)
+    return study.solve(study.Question(Scene(units.tabor), units=units, stiffness=0.1 / units.stiffness))
+
+
 def _printed(cell):
     """Value and error of a number like 1.234(5)."""
     value, last = re.fullmatch(r"(-?[\d.]+)\((\d+)\)", cell).groups()
@@ -135,12 +141,10 @@ def test_what_misses_its_tolerance_is_marked_where_it_stands(both):
 
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-13])
-def test_table_notes_and_record_miss_the_same_numbers_of_jumps(rtol):
+def test_table_notes_and_record_miss_the_same_numbers_of_jumps(soft, rtol):
     """A soft cantilever lands far away, by which its approaches are measured: at 1e-5 none is missed, at 1e-13 all."""
-    units = Units(100e-9, 74.14e9, 0.063, 0.143e-9)
-    curves = study.solve(study.Question(Scene(units.tabor), units=units, stiffness=0.1 / units.stiffness))
-    cycle = replace(curves.apparatus, tolerance=replace(curves.apparatus.tolerance, rtol=rtol))
-    curves = replace(curves, apparatus=cycle)
+    cycle = replace(soft.apparatus, tolerance=replace(soft.apparatus.tolerance, rtol=rtol))
+    curves = replace(soft, apparatus=cycle)
     printed = {row[0]: row[2:4] for row in _rows(curves)}
     jumps, notes = curve_record.record(curves)["jumps"]["apparatus"], " ".join(curve_terminal.notes(curves))
     for name, words in (("jump_on", "jump on"), ("jump_off", "jump off")):

@@ -36,7 +36,7 @@ def events_of(tabor, radius_ratio):
     return {name: TABLE[tabor, radius_ratio, name] for name in EVENTS if (tabor, radius_ratio, name) in TABLE}
 
 
-@pytest.mark.parametrize(("tabor", "radius_ratio"), [(0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (3, 100)])
+@pytest.mark.parametrize(("tabor", "radius_ratio"), [(0.2, 10), (1, 30)])
 def test_the_table_against_the_sphere_in_legendre_polynomials(tabor, radius_ratio):
     scene = Scene(tabor, Hemisphere(radius_ratio=radius_ratio, poisson=POISSON))
     path, table = harmonics.trace(scene, rtol=1e-7), events_of(tabor, radius_ratio)
@@ -50,7 +50,7 @@ def test_the_table_against_the_sphere_in_legendre_polynomials(tabor, radius_rati
             assert event.contact_radius == pytest.approx(row["contact_radius"], abs=1e-5)
 
 
-CASES = [(0.2, 10), (1, 10), (1, 10000), (3, 10)]
+CASES = [(1, 10000)]
 
 
 @pytest.fixture(scope="module", params=CASES, ids=lambda case: f"{case[0]:g}-{case[1]:g}")
@@ -99,7 +99,7 @@ def test_the_shift_of_a_jump_has_the_bulks_logarithm(half_space, tabor, name):
     assert fitted[0] == pytest.approx(tabor * half_space[tabor][name].load * logarithm(POISSON), rel=0.05)
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.2, 0.3, 0.45, 0.4999])
+@pytest.mark.parametrize("poisson", [0.2, 0.4999])
 def test_bulk_compliance_is_logarithmic_but_for_rubber(poisson):
     """Under Gaussian pressures of width b, R = 1: (w(0) - sqrt(pi) b)/W grows by kappa ln 2 as b halves."""
     excess = []

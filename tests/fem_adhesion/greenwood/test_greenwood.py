@@ -306,7 +306,7 @@ def test_a_theory_stands_in_the_file_under_its_name(lines_in, stem, curve, tabor
     np.testing.assert_allclose(size * load, THEORIES[stem, curve, tabor](along), rtol=1e-8, atol=1e-8)
 
 
-@pytest.mark.parametrize("stem", ["fig_1a", "fig_2a", "fig_2b", "fig_3c", "fig_6b"])
+@pytest.mark.parametrize("stem", ["fig_2a", "fig_6b"])
 def test_computed_loads_are_right_within_their_errors(rows, lines_in, stem):
     """At both ends of the file, where a single state has the approach."""
     columns, _ = lines_in(stem)
@@ -315,11 +315,9 @@ def test_computed_loads_are_right_within_their_errors(rows, lines_in, stem):
         path = halfspace.trace(mu, rtol=1e-8)
         x, y, dx, dy = columns[2:6]
         for row in (table[7], table[-7]):
-            alpha, beyond = float(row[x]) * (mu if stem in ("fig_2b", "fig_6b") else 1), float(row[x]) > -1
+            alpha, beyond = float(row[x]) * (mu if stem == "fig_6b" else 1), float(row[x]) > -1
             branch = list(path.branches("approach"))[-1 if beyond else 0]
-            load = float(path.at(approach=alpha, branch=branch).load) / (
-                2 * np.pi if stem in ("fig_2b", "fig_6b") else 1
-            )
+            load = float(path.at(approach=alpha, branch=branch).load) / (2 * np.pi if stem == "fig_6b" else 1)
             bar = float(row[dy]) + 10 * float(row[dx]) + 1e-8
             assert abs(float(row[y]) - load) < bar < 1e-4
 

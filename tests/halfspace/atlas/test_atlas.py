@@ -38,7 +38,7 @@ STATES = {
 @pytest.fixture(scope="module")
 def known():
     """Numbers by the source at random Tabor parameters, those beside both births of folds among them."""
-    return {tabor: build.solved(tabor) for tabor in build.sample(40, 2, BIRTH.value).tolist()}
+    return {tabor: build.solved(tabor) for tabor in build.sample(15, 2, BIRTH.value).tolist()}
 
 
 # --- against its source ---

