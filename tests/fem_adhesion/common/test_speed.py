@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 from matplotlib import rc_context
 
-import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Hemisphere, cli, convergence
 from fem_adhesion.common import style
 from fem_adhesion.common.page import markdown
-from fem_adhesion.scene import Scene
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
 from fem_adhesion.speed.methods import QUANTITIES, Method, Step, all_methods
@@ -25,13 +23,10 @@ from fem_adhesion.speed.study import (
     SpeedStudy,
     Timing,
     Truth,
-    best,
-    cheapest,
     measure,
     pareto_front,
     timed,
 )
-from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.values import Estimate
 
@@ -114,22 +109,6 @@ def test_each_method_is_as_accurate_as_it_is_known_to_be(method, rows):
     assert [int(r["unknowns"]) for r in solved] == sorted(int(r["unknowns"]) for r in solved)
 
 
-def test_the_best_of_each_family_finds_the_known_values(rows):
-    """The table's errors are differences from values known otherwise, under the right name."""
-    for method, asked in (("adaptive", lambda t: halfspace.trace(1.0, rtol=t)), ("FE hp", fe_path)):
-        row = next(r for r in rows if r["method"] == method and r["setting"] == "rtol=1e-03")
-        path = asked(1e-3)
-        found = {"pull_off": path.event("pull_off").load, "jump_on": path.event("jump_on").approach}
-        found["hysteresis"] = cycle(path).energy_lost.value
-        for quantity, value in found.items():
-            error = abs(value - TRUE[quantity]) / SIZES[quantity]
-            assert float(row[f"{quantity}_error"]) == pytest.approx(error, rel=0.01, abs=2e-10), quantity
-
-
-def fe_path(rtol):
-    return fem_adhesion.trace(Scene(1.0, HalfSpace(poisson=0.3)), rtol=rtol)
-
-
 def test_clamping_tells_and_solving_whole_does_not(rows):
     """A clamped box is another body; the monolithic solver finds what the condensed one finds on the same mesh."""
     of = {(r["method"], r["setting"]): r for r in rows}
@@ -146,14 +125,6 @@ def test_a_grid_too_coarse_is_recorded_with_its_reason(rows):
     assert float(told[1]) > float(told[2]) > 0
     assert {coarse[key] for key in ("unknowns", "pull_off_error", "jump_on_error", "hysteresis_error")} == {""}
     assert all(bool(r["reason"]) == (r["outcome"] != "converged") for r in rows)
-
-
-def test_a_method_gives_only_what_it_can(rows):
-    for r in rows:
-        if r["outcome"] == "converged":
-            given = {q for q in QUANTITIES if r[f"{q}_error"]}
-            swept = r["method"] in ("simple relaxation", "Greenwood's iteration")
-            assert given == ({"pull_off"} if swept else set(QUANTITIES)), r
 
 
 def test_each_family_is_judged_by_the_other(page, rows):
@@ -244,14 +215,6 @@ def test_errors_that_the_truth_cannot_tell_are_equally_accurate():
 def test_errors_are_relative_to_value_or_scale(quantity, size):
     truth = Truth("half-space", 1e-9, dict.fromkeys(QUANTITIES, Estimate(-3.0, 0.0)), 7.0)
     assert truth.relative(quantity, 2.0) == 2.0 / size
-
-
-def test_the_cheapest_rung_and_the_most_accurate():
-    rungs = [rung(1, 1e-2), rung(5, 1e-4), rung(4, 5e-4), FAILED]
-    assert cheapest(rungs, 1e-3).seconds == 4
-    assert cheapest(rungs, 1e-6) is None
-    assert best(rungs).seconds == 5
-    assert best(rungs, "jump_on") is None
 
 
 def test_each_cost_grows_by_its_own_exponent():

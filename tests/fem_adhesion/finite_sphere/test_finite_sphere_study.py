@@ -20,7 +20,7 @@ from processes import alive, wait_until
 import halfspace
 from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene
 from fem_adhesion.common import files
-from fem_adhesion.common.files import NotWritten, open_store
+from fem_adhesion.common.files import open_store
 from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.finite_sphere import cases as finite_sphere_cases
 from fem_adhesion.finite_sphere import fit as finite_sphere_fit
@@ -288,19 +288,6 @@ def test_two_tolerances_have_a_file_each(tmp_path):
 
 
 INPUTS = ("tabor", "radius_ratio", "poisson", "rtol")
-
-
-def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
-    study = opened(tmp_path)
-    study.put({"a": 1}, {"b": 2})
-    with pytest.raises(ValueError, match="not JSON compliant"):
-        study.put({"a": 1}, {"b": math.nan})
-    assert study.get({"a": 1}) == {"b": 2}
-    monkeypatch.setattr(Path, "write_bytes", lambda *_: (_ for _ in ()).throw(OSError("disk full")))
-    with pytest.raises(NotWritten, match=r"cannot be written \(disk full\); choose another place"):
-        study.put({"a": 1}, {"b": 3})
-    assert study.get({"a": 1}) == {"b": 2}
-    assert len(list((tmp_path / "cases").iterdir())) == 1
 
 
 def test_a_directory_in_use_is_refused_and_left_alone(tmp_path):
