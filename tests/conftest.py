@@ -5,13 +5,11 @@ import os
 from collections.abc import Mapping
 from functools import partial
 
-import comparisons
 import numpy as np
 import pytest
 from longest import LONGEST
 from whole_runs import whole_run
 
-from fem_adhesion import Scene
 from fem_adhesion.crosscheck import from_scratch
 
 ORIGINAL, RELATIVE, ABSOLUTE = pytest.approx, 1e-6, 1e-12
@@ -47,19 +45,6 @@ def whole(tmp_path_factory):
     base = tmp_path_factory.getbasetemp()
     shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
     return partial(whole_run, shared / "whole")
-
-
-@pytest.fixture(scope="session")
-def cases_of(whole):
-    """Compare scenes at the usual tolerance, or take what a command line of the session found; see `comparisons`."""
-    (place,) = whole.args
-
-    def cases(*tabors):
-        with pytest.MonkeyPatch.context() as patched:
-            comparisons.keep(place, patched)
-            return list(comparisons.scenes.run([Scene(tabor) for tabor in tabors], jobs=1))
-
-    return cases
 
 
 def approx(expected, rel=None, abs=None, nan_ok=False):  # noqa: A002  pytest's own name

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_up import ENDINGS
 
 from fem_adhesion import Scene
 from fem_adhesion.common.page import Figure, Section, write_page
@@ -25,7 +26,7 @@ END = 600_000
 
 
 @pytest.fixture(scope="module")
-def report(cases_of, tmp_path_factory):
+def report(tmp_path_factory):
     """A page whose half-space is another by far, so that its lines are told from those of the elements."""
     curves = solve(Question(Scene(2.0), "both", 1e-3))
     walked = walk(curves, states=10)
@@ -33,7 +34,7 @@ def report(cases_of, tmp_path_factory):
         replace(one, pressure=one.pressure * [[1.0], [0.5]], gap=one.gap * [[1.0], [0.7]]) for one in walked.stations
     ]
     walked = replace(walked, stations=tuple(scaled))
-    contents = Contents(cases_of(1.0), curves, walked, {})
+    contents = Contents(ENDINGS["agree"], curves, walked, {})
     file = tmp_path_factory.mktemp("report") / "report.html"
     file.write_text(page(contents))
     return file

@@ -12,8 +12,6 @@ import pytest
 
 from fem_adhesion import cli
 from fem_adhesion.common.files import (
-    ELSEWHERE,
-    REMEDIES,
     NotWritten,
     directory_written_aside,
     open_store,
@@ -276,21 +274,3 @@ def test_what_is_not_about_writing_passes_through(tmp_path):
     with pytest.raises(ZeroDivisionError), written_aside(tmp_path / "a") as file:
         file.write(f"half {1 / 0}")
     assert not list(tmp_path.iterdir())
-
-
-def test_bytes_and_text_go_to_the_same_file(tmp_path):
-    file = tmp_path / "a"
-    with written_aside(file) as aside:
-        aside.buffer.write(b"\x89")
-        aside.flush()
-    assert file.read_bytes() == b"\x89"
-
-
-@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EPIPE, 0])
-def test_each_message_has_what_why_and_a_remedy(number, tmp_path):
-    error = OSError(number, os.strerror(number)) if number else OSError("encoder error")
-    with pytest.raises(NotWritten) as refused, writing(tmp_path / "a"):
-        raise error
-    reason = os.strerror(number) if number else "encoder error"
-    remedy = REMEDIES.get(number, ELSEWHERE)
-    assert str(refused.value) == f"{tmp_path / 'a'} cannot be written ({reason}); {remedy}"

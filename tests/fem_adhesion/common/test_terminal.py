@@ -9,8 +9,8 @@ import struct
 import subprocess
 import sys
 import termios
-from dataclasses import replace
 
+import made_up
 import pytest
 from rich.console import Console
 
@@ -86,17 +86,16 @@ def test_a_cell_is_not_broken_between_a_number_and_its_unit(width):
     )
 
 
-@pytest.fixture(scope="module")
-def case(cases_of):
+@pytest.fixture
+def case():
     """A case with all values distinct and every verdict."""
-    (solved,) = cases_of(0.5)
     rows = (
         Row("first load", "R dgamma", Estimate(-1.2345678, 1e-7), Estimate(-1.2345679, 2e-7), 1.1e-7, 6.6e-5),
         Row("second load", "J", Estimate(2.3456789, 3e-7), Estimate(2.3999999, 4e-7), 5.5e-2, 7.7e-5),
         Row("third gap", "eps", Estimate(3.456, 1.2e-3), Estimate(3.457, 3.4e-3), 5.6e-4, 7.8e-6),
         Row("fourth gap", "beta", Estimate(4.567, 1.3e-3), None, float("nan"), 8.8e-6),
     )
-    return replace(solved, rows=rows)
+    return made_up.case(*rows)
 
 
 @pytest.mark.parametrize("width", WIDTHS)

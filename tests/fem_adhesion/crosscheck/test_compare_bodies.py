@@ -62,10 +62,6 @@ def test_a_hemisphere_is_compared_with_the_whole_sphere(tmp_path, capsys):
     ("arguments", "message"),
     [
         ([*HEMISPHERE, "--strain", "finite"], "is compared with nothing, limit: small strain"),
-        (["--body", "hemisphere:10,20"], "limit: hemisphere:radius_ratio,sliding|bonded; leave out 20"),
-        (["--body", "half-space:bonded"], "body = half-space:bonded, limit: half-space; leave out bonded"),
-        (["--body", "hemisphere"], "limit: hemisphere:radius_ratio,sliding|bonded; give radius_ratio, R/eps"),
-        (["--share", "0.5"], "--share would have no effect, limit: with --counter"),
         (["--body", "hemisphere:1e6", "--tabor", "5"], "radius_ratio = 1e+06 at tabor 5 takes"),
     ],
 )

@@ -165,13 +165,6 @@ def test_compare_gives_options_to_its_reference_or_has_none(option, one, other, 
         assert given[0] != given[1] or (given[0][0] == "half-space" and option in ONE_NUMBER)
 
 
-def test_a_layer_is_a_layer_to_both_solvers(capsys):
-    """Not the half-space beside it, at -5.24855 R dgamma."""
-    for solver, rows in (("half-space", 1), ("both", 2)):
-        assert cli.main(["curve", *LAYER.split(), "--solver", solver, "--rtol", "1e-4"]) == 0
-        assert capsys.readouterr().out.count("-5.6816") == rows
-
-
 def test_harmonics_refuse_what_they_do_not_know():
     """A bonded counter-body, finite strain, and a body of another kind: the answer would be another contact's."""
     bonded = fem_adhesion.Hemisphere(radius_ratio=40.0, grip="bonded")

@@ -6,6 +6,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -298,6 +299,7 @@ def test_every_kind_of_file_is_written_whole(tmp_path, monkeypatch, capsys):
     """Through the command line; of figure, picture and fields see `test_readme` and `test_paraview`."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(module, "USUAL", replace(module.USUAL, frames=2))
+    monkeypatch.setattr(module, "write_movie", partial(module.write_movie, size=(160, 100)))
     files = ["--json", "curve.json", "--csv", "curve.csv", "--points", "2", "--movie", "jump.gif"]
     assert cli.main(["curve", "--tabor", "2", "--rtol", "1e-3", *files]) == 0
     captured = capsys.readouterr()
@@ -311,7 +313,7 @@ def test_every_kind_of_file_is_written_whole(tmp_path, monkeypatch, capsys):
     assert next(float(row["load_R_dgamma"]) for row in rows if row["event"] == "pull_off") == load
     assert f"{load:.2f}" in captured.out
     with Image.open(tmp_path / "jump.gif") as image:
-        assert image.size == (800, 500)
+        assert image.size == (160, 100)
         image.load()
 
 

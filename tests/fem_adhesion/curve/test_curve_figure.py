@@ -114,19 +114,6 @@ def _distance(line, point):
     return np.hypot(*(a + t * d - point[:, None])).min()
 
 
-@pytest.mark.parametrize("tabor", [2.0, 5.0])
-def test_stability_changes_at_folds_and_at_pull_off(curves, tabor):
-    path, line = curves[tabor].path, curve_lines.smooth(curves[tabor].path)
-    unstable = np.flatnonzero(line.kind == curve_lines.UNSTABLE)
-    for name, at in (("jump_on", unstable[0]), ("jump_off", unstable[-1])):
-        event = path.event(name)
-        assert line.approach[at] == pytest.approx(event.approach, abs=0.02 * (1 + tabor))
-        assert line.load[at] == pytest.approx(event.load, abs=0.15)
-    stable = np.flatnonzero(line.kind == curve_lines.STABLE)
-    assert line.load[stable[0]] == pytest.approx(path.event("pull_off").load, abs=0.02)
-    assert np.all(np.diff(stable) == 1)
-
-
 def test_an_apparatus_adds_two_arrows_along_its_load_lines(real):
     axes = _panel(_drawn(real), "load")
     assert len(_arrows(axes)) == 4

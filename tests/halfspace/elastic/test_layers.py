@@ -225,16 +225,6 @@ def test_images_serve_a_contact_wider_than_the_attraction():
         assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=1e-5 * np.abs(wanted).max())
 
 
-@pytest.mark.parametrize(("rtol", "off"), [(1e-5, 2e-7)])
-def test_a_central_gap_is_read_off_an_even_polynomial(rtol, off):
-    """By one in the radius it was 1.2e-5 and 5.4e-7 off, the latter told as 4.7e-7: its coefficients fall unevenly."""
-    gap, exact = (
-        trace(0.1, body=Layer(0.1, 0.4999), rtol=r).event("zero_load").estimate("central_gap") for r in (rtol, 1e-8)
-    )
-    assert abs(gap.value - exact.value) < min(gap.error + exact.error, off)
-    assert gap.error < 100 * off
-
-
 def test_estimates_hold_what_images_of_a_thin_layer_leave():
     """By finite elements, which have none, at 1e-4 and 1e-6 alike to ten digits."""
     path = trace(1.0, body=Layer(0.01, 0.3), profile=Hyperboloid(0.2), rtol=1e-5)
