@@ -12,7 +12,7 @@ export PYTHONPYCACHEPREFIX ?= $(abspath $(VENV)/bytecode)
 endif
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help compare test check bench hard honesty atlas peers docs clean
+.PHONY: help compare test check bench hard honesty atlas peers docs gallery clean
 
 # Targets share the environment that they install.
 .NOTPARALLEL:
@@ -56,11 +56,16 @@ build/peers/%/installed: tests/peers/requirements/%.txt
 	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check --requirement $<
 	@touch $@
 
-docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs (QUICK=1: without the code and the search)
-	$(BIN)/python tests/project/docs.py $(or $(OUT),build/docs) $(if $(QUICK),--quick)
+docs: $(VENV)/installed-dev ## build the documentation into build/docs, with every script of the gallery run (two minutes)
+	rm -rf docs/generated $(or $(OUT),build/docs)
+	$(BIN)/python -m sphinx --builder html --nitpicky --fail-on-warning --keep-going --quiet docs $(or $(OUT),build/docs)
+	@echo "written: $(or $(OUT),build/docs)/index.html"
+
+gallery: $(VENV)/installed-dev ## draw kept pictures anew if the code that draws them has changed (ALL=1: all, two minutes)
+	$(BIN)/python docs/pictures/make.py $(if $(ALL),--all)
 
 clean: ## remove the environment and all caches
-	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
+	rm -rf $(VENV) build docs/generated *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
 
 # One call installs all that a target needs. What is compiled is what is imported, and that by Python, when it is.
 define install

@@ -55,7 +55,7 @@ def undeformed_load(central_gap: ArrayLike) -> Array:
 
 
 def fitted_approach(tabor: ArrayLike) -> Array:
-    """Approach at the jump by the empirical fit of [G97] App. C, (|alpha*| + 1)^(7/2) = 3 pi^2 mu^(3/2)."""
+    """Approach at the jump by the empirical fit of [G97] App. C, (abs(alpha*) + 1)^(7/2) = 3 pi^2 mu^(3/2)."""
     return 1 - _solve_power(3 * np.pi**2, tabor)
 
 

@@ -1,6 +1,7 @@
-"""Every command that the README shows is run whole, as it stands there or in its quick form, and its files are opened.
+"""Every command that README and docs show is run whole, as it stands there or in its quick form; its files are opened.
 
-What is in the files is read back by the tests of each command, of the same run.
+What is in the files is read back by the tests of each command, of the same run. Commands that `make docs` runs while it
+builds the pages, and the scripts of the gallery, are not run once more: see test_docs.
 """
 
 import ast
@@ -22,6 +23,7 @@ from whole_runs import COMPARE, GREENWOOD, REPORT, ROOT, tables_in
 from fem_adhesion import cli
 
 README = (ROOT / "README.md").read_text()
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 ASSESS = (
     "fem-adhesion assess --radius 100nm --modulus 72GPa --poisson 0.17 --work-of-adhesion 0.063J/m^2 --hamaker 65zJ "
@@ -31,59 +33,51 @@ MAKE, INSTALL = "make", "install"  # run by test_make; what the environment of t
 
 # How each is run: as another line, which may only add --quick; by test_make; by what installs the tests' environment.
 LINES = {
-    "fem-adhesion curve --tabor 2 --plot curve.png": "fem-adhesion curve --tabor 2 --plot curve.png",
-    "make compare": MAKE,
-    "make test": MAKE,
-    "make help": MAKE,
-    "make check": MAKE,
-    "make bench": MAKE,
-    "make honesty": MAKE,
-    "make atlas": MAKE,
-    "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json": COMPARE,
-    "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve": (
-        "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve"
-    ),
-    "fem-adhesion curve --tabor 0.5 --solver weak-form": "fem-adhesion curve --tabor 0.5 --solver weak-form",
-    "fem-adhesion sweep --tabor 0.1:10:7 --csv sweep.csv": "fem-adhesion sweep --tabor 0.1:10:7 --csv sweep.csv",
-    "pip install 'fem-adhesion[view]'": INSTALL,
+    **dict.fromkeys((f"make {target}" for target in test_make.TARGETS if target != "clean"), MAKE),
+    "make gallery ALL=1": MAKE,
     "pip install '.[studies]'": INSTALL,
-    REPORT: REPORT,
-    "fem-adhesion speed --out speed --quick": "fem-adhesion speed --out speed --quick",
+    "pip install .": INSTALL,
+    **{
+        line: line
+        for line in (
+            COMPARE,
+            REPORT,
+            f"{ASSESS} --plot silica.png",
+            "fem-adhesion curve --tabor 2 --plot curve.png",
+            "fem-adhesion curve --tabor 0.5 --solver weak-form",
+            "fem-adhesion speed --out speed --quick",
+            "fem-adhesion finite-sphere --out sphere --quick",
+        )
+    },
     "fem-adhesion greenwood --out greenwood": GREENWOOD,
-    "fem-adhesion formulas --out formulas": "fem-adhesion formulas --out formulas",
-    "fem-adhesion benchmark --problems sheets": "fem-adhesion benchmark --problems sheets",
-    f"{ASSESS} --plot silica.png": f"{ASSESS} --plot silica.png",
-    "fem-adhesion finite-sphere --out sphere --quick": "fem-adhesion finite-sphere --out sphere --quick",
-    "make hard": MAKE,
-    "make docs": MAKE,
-    "fem-adhesion curve --tabor 2 --render body.png": "fem-adhesion curve --tabor 2 --render body.png",
 }
 (COMMANDS,) = [action for action in cli.make_parser()._actions if action.choices]
 NAMES = tuple(COMMANDS.choices)
 RUN = tuple(dict.fromkeys(run for run in LINES.values() if run not in (MAKE, INSTALL)))
 
 
-def _joined(text):
-    """A text with the lines that a backslash continues made one."""
-    return re.sub(r"\s*\\\n\s*", " ", text)
-
-
 def _shown():
-    """Every command line of the README: indented blocks, and commands within the text."""
-    prose = re.sub(r"```.*?```", "", README, flags=re.S)
-    blocks = [line.split("  #")[0].strip() for line in re.findall(r"^    (\S.*)$", _joined(prose), re.M)]
-    inline = [" ".join(code.split()) for code in re.findall(r"`([^`]+)`", prose)]
-    return list(dict.fromkeys([*blocks, *(code for code in inline if re.match(r"(make|pip|fem-adhesion) ", code))]))
+    """Every command line of the pages but those that `make docs` runs: in blocks of the shell, and within the text."""
+    shown = []
+    for page in PAGES:
+        text = re.sub(r"\s*\\\n\s*", " ", page.read_text())
+        blocks = "".join(re.findall(r"^```sh\n(.*?)^```", text, re.S | re.M)).splitlines()
+        prose = re.sub(r"^ *```.*?^ *```", "", text, flags=re.S | re.M)
+        blocks += re.findall(r"^    (\S.*)$", prose, re.M)
+        inline = [" ".join(code.split()) for code in re.findall(r"`([^`]+)`", prose)]
+        shown += [line.split("  #")[0].strip() for line in (*blocks, *inline)]
+    return list(dict.fromkeys(line for line in shown if re.match(r"(make|pip|fem-adhesion) ", line)))
 
 
-def test_every_command_line_of_the_readme_is_run():
-    assert sorted(_shown()) == sorted(LINES)
+def test_every_command_line_of_the_pages_is_run():
+    named = {f"fem-adhesion {name}" for name in NAMES}
+    assert sorted(set(_shown()) - named) == sorted(LINES)
 
 
 def test_a_line_is_run_as_it_stands_or_in_its_quick_form():
     for line, run in LINES.items():
         if run == MAKE:
-            assert line.removeprefix("make ") in test_make.TARGETS
+            assert line.split()[1] in test_make.TARGETS
         elif run != INSTALL:
             assert run in (line, f"{line} --quick")
 
@@ -92,7 +86,7 @@ def test_a_line_is_run_as_it_stands_or_in_its_quick_form():
 
 
 @pytest.mark.parametrize("line", RUN)
-def test_a_command_of_the_readme_runs_to_its_end(line, whole):
+def test_a_command_of_the_pages_runs_to_its_end(line, whole):
     run = whole(line)
     assert run.code == 0, run.err
     assert run.out.strip()
@@ -207,9 +201,13 @@ def test_the_table_of_the_readme_is_what_make_compare_prints(whole):
         assert (budget, verdict) == (row["budget"], row["verdict"])
 
 
-@pytest.mark.parametrize("picture", re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README))
-def test_a_picture_of_the_readme_is_there(picture):
-    assert (ROOT / picture).stat().st_size > 10_000
+@pytest.mark.parametrize("link", sorted(set(re.findall(r"\]\(([^)]+)\)", README))))
+def test_a_link_of_the_readme_leads_somewhere(link):
+    assert (ROOT / link).exists()
+
+
+def test_the_readme_is_short():
+    assert len(README.splitlines()) <= 120
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,0 +1,56 @@
+"""Wheel and sdist have all that is in the repository, and every command runs from the wheel alone."""
+
+import subprocess
+import sys
+import tarfile
+import zipfile
+from importlib.metadata import version
+
+import pytest
+from whole_runs import ROOT
+
+from fem_adhesion import cli
+
+pytestmark = pytest.mark.skipif(int(version("setuptools").split(".")[0]) < 77, reason="the build needs setuptools 77")
+BUILD = "from setuptools import build_meta as b; b.build_sdist('dist'); b.build_wheel('dist')"
+RUN = "import fem_adhesion, sys; from fem_adhesion import cli; print(fem_adhesion.__file__); sys.exit(cli.main())"
+
+
+def tracked():
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
+    return {name for name in listed.stdout.splitlines() if (ROOT / name).exists()}
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """Both distributions, of a copy of what is tracked."""
+    place = tmp_path_factory.mktemp("distribution")
+    for name in tracked():
+        (place / name).parent.mkdir(parents=True, exist_ok=True)
+        (place / name).write_bytes((ROOT / name).read_bytes())
+    (place / "dist").mkdir()
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", BUILD], cwd=place, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return place / "dist"
+
+
+def test_the_sdist_has_all_but_dotfiles(built):
+    (file,) = built.glob("*.tar.gz")
+    with tarfile.open(file) as archive:
+        inside = {name.partition("/")[2] for name in archive.getnames()}
+    assert {name for name in tracked() if not name.startswith(".")} <= inside
+
+
+def test_every_command_runs_from_the_wheel_alone(built, tmp_path):
+    (file,) = built.glob("*.whl")
+    with zipfile.ZipFile(file) as wheel:
+        inside = set(wheel.namelist())
+        wheel.extractall(tmp_path / "site")
+    assert {name for name in tracked() if name.startswith(("halfspace/", "fem_adhesion/"))} <= inside
+    for arguments in (*([command.name, "--help"] for command in cli.COMMANDS), ["formulas", "--out", "formulas"]):
+        run = [sys.executable, "-c", RUN, *arguments]
+        done = subprocess.run(
+            run, cwd=tmp_path, env={"PYTHONPATH": str(tmp_path / "site")}, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.startswith(str(tmp_path / "site"))
