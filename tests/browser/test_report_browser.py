@@ -2,11 +2,12 @@
 
 import json
 import re
-import shutil
 from dataclasses import replace
 
+import chromium
 import numpy as np
 import pytest
+from chromium import END
 from made_up import ENDINGS
 
 from fem_adhesion import Scene
@@ -15,14 +16,7 @@ from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.report.page import Contents, page
 from fem_adhesion.report.walk import walk
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine; .ci/run installs it")
-QUIET = ["disable-gpu", "disable-quic", "no-first-run", "disable-background-networking", "disable-component-update"]
-FLAGS = ["--no-sandbox", *(f"--{flag}" for flag in QUIET), "--disable-sync"]
-
-
-END = 600_000
-"""Milliseconds after which a wait has gone wrong; a page is ready in one, on a machine that has nothing else to do."""
+pytestmark = chromium.needed
 
 
 @pytest.fixture(scope="module")
@@ -48,12 +42,8 @@ def stations(report):
 
 @pytest.fixture(scope="module")
 def browser():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS, timeout=END)
-        yield chromium
-        chromium.close()
+    with chromium.launched() as opened:
+        yield opened
 
 
 @pytest.fixture

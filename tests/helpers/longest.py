@@ -2,6 +2,7 @@
 
 LONGEST = (
     "test_make.py",
+    "test_docs.py",
     "test_readme.py",
     "test_from_scratch.py",
     "test_layer_body.py",

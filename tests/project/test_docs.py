@@ -1,10 +1,14 @@
-"""The documentation is built once in a session, every script and command in it run; the pages are read here."""
+"""The documentation is built once in a session, every script and command in it run; the pages are read here.
+
+They are also opened in a browser: nothing is fetched, they fit a telephone, and anyone can read them.
+"""
 
 import ast
 import runpy
 from html.parser import HTMLParser
 from urllib.parse import unquote, urlsplit
 
+import chromium
 import pytest
 from test_make import TARGETS
 from whole_runs import ROOT
@@ -97,3 +101,46 @@ def test_a_changed_figure_is_known_by_its_digest(tmp_path):
     assert digest([str(code)]) == before
     code.write_text("width = 2\n")
     assert digest([str(code)]) != before
+
+
+# --- in a browser ---
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium.launched() as opened:
+        yield opened
+
+
+MAIN = [
+    "index.html",
+    "start.html",
+    "python.html",
+    "generated/gallery/index.html",
+    "generated/gallery/01_afm_tip.html",
+    "reference/commands.html",
+    "reference/files.html",
+    "reference/api/halfspace.html",
+    "theory/model.html",
+    "theory/checks.html",
+    "theory/greenwood.html",
+]
+
+
+@chromium.needed
+@pytest.mark.parametrize(
+    ("name", "scheme"), [*((name, "light") for name in MAIN), *((name, "dark") for name in MAIN[:3])]
+)
+def test_a_page_fetches_nothing_fits_a_telephone_and_axe_is_content(name, scheme, site, browser):
+    from axe_playwright_python.sync_playwright import Axe
+
+    context = browser.new_context(viewport={"width": 360, "height": 800}, color_scheme=scheme)
+    shown, requests = context.new_page(), []
+    shown.set_default_timeout(chromium.END)
+    shown.on("request", lambda request: requests.append(request.url))
+    shown.goto((site / name).as_uri())
+    assert shown.evaluate("document.documentElement.scrollWidth") <= 360
+    found = Axe().run(shown)
+    assert found.violations_count == 0, found.generate_report()
+    assert [url for url in requests if not url.startswith(("file:", "data:"))] == []
+    context.close()
