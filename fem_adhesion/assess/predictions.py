@@ -122,7 +122,7 @@ def read_atlas(
     """Numbers of the half-space by the atlas: its series, and for a cantilever so many samples of its curve.
 
     The errors with a cantilever are those of the samples, see `closed`, and of the atlas' curve, times `USUAL.slack`: a
-    turn of the base moves by what the curve's derivatives err.
+    turn of the base moves by what the curve's derivatives err. Beyond the curve the second order of the bulge counts.
     """
     pull_off, zero_load, *jumps = (
         getattr(atlas, name)(np.array(tabors)) for name in ("pull_off", "zero_load", "jump_on", "jump_off")
@@ -140,8 +140,14 @@ def read_atlas(
             found["energy_lost"] = _at(jumps[0], "energy", i) + _at(jumps[1], "energy", i)
         else:
             read = closed("atlas", partial(theories.half_space, number=number), tabor, stiffness, unit).values
-            slack = Estimate(0.0, USUAL.slack * float(atlas.curve(tabor).errors[:2].max(axis=1).sum()))
-            more = _in_si(dict.fromkeys(read.keys() - found.keys(), slack), unit)
+            curve = atlas.curve(tabor)
+            slack = Estimate(0.0, USUAL.slack * float(curve.errors[:2].max(axis=1).sum()))
+            errors = dict.fromkeys(read.keys() - found.keys(), slack)
+            end, bulge = theories.far_end(curve)
+            on = read["jump_on_separation"].value / unit.approach if "jump_on_separation" in read else 0.0
+            if on > end:  # by the first order of the bulge
+                errors["jump_on_separation"] += Estimate(0.0, bulge**2 * on)
+            more = _in_si(errors, unit)
             values = {name: Quantity.of(read[name] + error, 1.0, error.unit) for name, error in more.items()}
         yield values | _in_si(found, unit)
 

@@ -42,8 +42,8 @@ class Settings:
     number: int = 100_001  # of each stretch; odd, so that every second sample has the same ends
     nodes: int = 48  # of the polynomial through JKR's theory on layers
     sampled: int = 8001  # places on the atlas' curve; energies err by 2e-7
-    zooms: int = 3  # intervals of samples at a turn of the base, each divided again
-    zoomed: int = 65  # places on such an interval
+    zooms: int = 3  # times that intervals beside a turn of the base are divided
+    zoomed: int = 33  # places on such an interval
     slack: float = (
         10.0  # errors of the atlas' curve by which its turns may be off, in eps, and energies, in R dgamma eps
     )

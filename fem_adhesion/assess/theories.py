@@ -101,23 +101,28 @@ def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Array:
     return _joined(_far(0.0, tabor, stiffness), np.stack([tabor * approach, load, widest * s**2]))
 
 
+def far_end(curve: atlas.Curve) -> tuple[float, float]:
+    """Separation 1 - alpha* in eps where a curve of the atlas begins, and the part of the load there by the bulge."""
+    end = curve.states(places=np.zeros(1))
+    s = 1 - float(end.approach[0])
+    return s, -float(end.load[0]) * s**2 * 3 / (8 * np.pi) - 1
+
+
 def half_space(tabor: float, stiffness: float, number: int = USUAL.sampled) -> Array:
     """Paraboloid on the half-space by the atlas, 0.01 <= tabor <= 300, with samples close to where the base turns.
 
     Farther than the atlas goes, with s = 1 - alpha*, the load is -(8 pi/3) s^-2 (1 + c s^-7/2): the attraction of the
-    undeformed gap and the first order of the bulge that it raises, whose c is that of the atlas' farthest state.
+    undeformed gap and the first order of the bulge that it raises, whose c is that of `far_end`.
     """
     curve = atlas.curve(tabor)
     last = curve.ends.size - 1
-    beyond = curve.states(places=np.zeros(1))
-    s0, W0 = 1 - float(beyond.approach[0]), float(beyond.load[0])
+    s0, bulge = far_end(curve)
     decades = math.log10(max(_beyond(tabor, stiffness) / s0, 10.0))
-    c = (-W0 * s0**2 * 3 / (8 * np.pi) - 1) * s0**3.5
 
     def sampled(places: Array) -> Array:
         """Samples at places on the curve, which are negative farther away: -1 a decade."""
         near, s = curve.states(places=places[places >= 0]), s0 * 10.0 ** -places[places < 0]
-        far = _apart(1 - s, -8 * np.pi / 3 * s**-2 * (1 + c * s**-3.5))
+        far = _apart(1 - s, -8 * np.pi / 3 * s**-2 * (1 + bulge * (s / s0) ** -3.5))
         return np.concatenate([far, np.stack([near.approach, near.load, near.contact_radius])], axis=1)
 
     places = np.concatenate([np.linspace(-decades, 0, number, endpoint=False), np.linspace(0, last, number)])
@@ -125,7 +130,8 @@ def half_space(tabor: float, stiffness: float, number: int = USUAL.sampled) -> A
     for _ in range(USUAL.zooms):
         rises = np.diff(found[0] + found[1] / stiffness)
         turns = np.flatnonzero(rises[:-1] * rises[1:] < 0)
-        added = [np.linspace(places[i], places[i + 2], USUAL.zoomed)[1:-1] for i in (*turns[:1], *turns[-1:])]
+        beside = (i + j for i in (*turns[:1], *turns[-1:]) for j in (0, 1))  # no place twice: rounding is no turn
+        added = [np.linspace(places[i], places[i + 1], USUAL.zoomed)[1:-1] for i in dict.fromkeys(beside)]
         new, order = np.unique(np.concatenate([places, *added]), return_index=True)
         found = np.concatenate([found, *(sampled(part) for part in added)], axis=1)[:, order]
         places = new

@@ -15,9 +15,11 @@ from fem_adhesion.assess.terminal import spread_told
 from fem_adhesion.common.contact import Contact, Inputs
 from fem_adhesion.common.numbers import Measured, measured
 from halfspace import atlas
+from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Morse
 from halfspace.scaling import Units, contact_modulus
+from halfspace.values import Estimate
 
 VALUES = {"radius": 1e-7, "modulus": 10e9, "poisson": 0.2, "work_of_adhesion": 0.06, "spacing": 0.15e-9}
 BIRTH = atlas.birth_of_folds().value
@@ -159,7 +161,17 @@ def test_no_digit_is_shown_that_the_number_has_not():
 
 @pytest.mark.parametrize(
     ("tabor", "stiffness"),
-    [(0.3, 0.0045), (0.1, 0.1), (2.0, math.inf), (5.0, 0.1), (2.0, 1e-4), (50.0, 0.01), (1.0, 5.0), (0.5, math.inf)],
+    [
+        (0.3, 0.0045),
+        (0.1, 0.1),
+        (2.0, math.inf),
+        (5.0, 0.1),
+        (2.0, 1e-4),
+        (50.0, 0.01),
+        (1.0, 5.0),
+        (0.5, math.inf),
+        (2.0, 1.1e-3),
+    ],
 )
 def test_the_atlas_agrees_with_solved_curves_within_errors(tabor, stiffness):
     units = Units(2.0, 3.0, 5.0, 7.0)
@@ -170,6 +182,15 @@ def test_the_atlas_agrees_with_solved_curves_within_errors(tabor, stiffness):
         assert quantity.agrees(truth.values[name]), name
         place = units.approach * (10 + tabor) if "jump" in name else abs(quantity.value)
         assert quantity.error <= 3e-6 * place
+
+
+@pytest.mark.parametrize("stiffness", [0.5044672917077176, 0.55])
+def test_no_rounding_is_taken_for_a_turn_of_the_base(stiffness):
+    """Two samples at one place, but for rounding, were: the jump was off by a sample, by 1e-3 eps."""
+    units, tabor = Units(1.0, 1.0, 1.0, 1.0), 0.05109749426451986
+    on = cycle(halfspace.trace(tabor), stiffness).jump_on.take_off
+    found = on_atlas("half-space", tabor, stiffness, units).values["jump_on_separation"]
+    assert found.agrees(Estimate(1.0 - on.approach, on.approach_error))
 
 
 def test_the_command_tells_value_spread_and_shares(tmp_path, capsys):
