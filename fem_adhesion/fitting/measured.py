@@ -216,7 +216,7 @@ def curve_of(
     if sign < 0:
         notes = (*notes, f"The {given} was negative in compression and was turned round.")
     joined = way * np.concatenate([x, back]), sign * np.concatenate([y, pull])
-    cut = slice(0, x.size), slice(x.size, None)
+    cut = slice(0, x.size), slice(x.size, x.size + back.size)
     return ForceCurve(TRAVELS[what], *joined, *cut, given == "deflection" or own is not None, used, (*told, *notes))
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from scipy.signal import savgol_filter
 
 from fem_adhesion.common.numbers import engineering
-from fem_adhesion.fitting.measured import ForceCurve
+from fem_adhesion.fitting.measured import APPROACH, ForceCurve
 from halfspace.errors import InputError
 from halfspace.values import Array, Mask, Valued
 
@@ -19,6 +20,7 @@ APART = 0.05  # share of the baseline next to the contact that is left out, for 
 FINEST = 1e-4  # share of the largest force that is no contact's, even where there is no noise
 PERIODS = np.geomspace(200e-9, 600e-9, 250).tolist()  # m, of half the wavelengths of lasers, 400 to 1200 nm
 ROUNDS = 4  # of clipping and of moving the contact, after which neither changes
+TURN = 50  # samples next to the turn, which are in contact if any are
 RUN = 5  # samples in a row beyond the noise that are a contact, or equal at an extreme force a detector's limit
 MAD = 1.4826  # standard deviation of normal noise in its median absolute deviation
 SETTLED = 0.03  # share of the steepest step of a jump below which it is over; amplifiers ring and creep
@@ -116,6 +118,7 @@ def prepare(curve: ForceCurve) -> Prepared:
     InputError
         If it has no baseline, no contact, or forces at the limit of the detector.
     """
+    curve = _steadied(curve)
     ways = {"approach": curve.approach, "retract": slice(None, curve.retract.start - 1, -1)}  # both towards the sample
     far = {name: _far(name, curve.travel[way], curve.force[way]) for name, way in ways.items()}
     background = np.empty_like(curve.force)
@@ -146,6 +149,28 @@ def prepare(curve: ForceCurve) -> Prepared:
         _jump(curve.travel, above, off, steps),
         -float(above[curve.retract].min()),
     )
+
+
+def _steadied(curve: ForceCurve) -> ForceCurve:
+    """Curve whose travel is smooth in time in each segment where what scatters is the sensor, not the base.
+
+    In contact the force follows the base: if it scatters less about a smooth motion than about the recorded one, the
+    base did not move so. Of tip positions nothing is told apart: the noise of the force is in them.
+    """
+    if curve.coordinate == APPROACH:
+        return curve
+    smooth, recorded, steady = curve.travel.copy(), 0.0, 0.0
+    for part, near in ((curve.approach, slice(-TURN, None)), (curve.retract, slice(TURN))):
+        smooth[part] = savgol_filter(curve.travel[part], int(FLAT * (part.stop - part.start)) | 1, 3)
+        force, own, slow = (each[part][near] for each in (curve.force, curve.travel, smooth))
+        stiffness = np.polyfit(slow - slow.mean(), force, 1)[0]
+        recorded += float(np.var(np.diff(force - stiffness * own)))
+        steady += float(np.var(np.diff(force - stiffness * slow)))
+    if recorded <= steady:
+        return curve
+    scatter = engineering(float(np.std(curve.travel - smooth)), "m")
+    why = f"The travel scatters by {scatter}, which the force does not follow: it was smoothed in time."
+    return replace(curve, travel=smooth, told=(*curve.told, why))
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,7 @@ def test_every_way_to_write_a_curve_reads_the_same(written, dialect):
     curve = read(written(**columns), **how)
     assert curve.travel == pytest.approx(TRAVEL)
     assert curve.force == pytest.approx(LOADED)
-    assert (curve.approach, curve.retract) == (slice(0, 1000), slice(1000, None))
+    assert (curve.approach, curve.retract) == (slice(0, 1000), slice(1000, 2000))
     assert curve.deflection_given == (dialect == "deflection")
     assert bool(curve.told) == (dialect != "deflection" or "segment" not in columns)
 
@@ -138,6 +138,15 @@ def test_the_wave_of_interfering_light_is_no_noise(written):
     assert found.background - wave == pytest.approx(flat.background, abs=5 * NOISE)  # in contact too
     assert "a wave of 250 pN and a period of 33" in found.told[-1]
     assert not any("wave" in line for line in flat.told)
+
+
+@pytest.mark.parametrize("follows", [False, True])
+def test_the_scatter_of_a_travel_that_the_force_does_not_follow_is_the_sensors(written, follows):
+    shaken = TRAVEL + np.random.default_rng(7).normal(size=TRAVEL.size) * 0.1 * UNITS.spacing
+    loaded = LOADED + follows * STIFFNESS * (shaken - TRAVEL) * (TRAVEL > 0)
+    found = prepare(read(written(piezo_m=shaken, force_N=loaded, segment=SEGMENT)))
+    assert np.std(found.curve.travel - (shaken if follows else TRAVEL)) < 0.03 * UNITS.spacing
+    assert any("smoothed" in line for line in found.told) != follows
 
 
 @pytest.mark.parametrize("seed", range(5))
