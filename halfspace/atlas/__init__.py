@@ -6,7 +6,7 @@ which depend on R/eps and Poisson's ratio as well. To read all that takes NumPy 
 """
 
 from halfspace.atlas import sphere
-from halfspace.atlas.curves import Curve, curve
+from halfspace.atlas.curves import Curve, curve, table
 from halfspace.atlas.events import (
     Energy,
     Jump,
@@ -20,4 +20,4 @@ from halfspace.atlas.events import (
 )
 
 __all__ = ["Curve", "Energy", "Jump", "birth_of_folds", "curve", "energy_lost", "energy_released"]
-__all__ += ["jump_off", "jump_on", "pull_off", "sphere", "zero_load"]
+__all__ += ["jump_off", "jump_on", "pull_off", "sphere", "table", "zero_load"]

@@ -223,12 +223,42 @@ def curve(tabor: float) -> Curve:
     return read_curve(tabor, tensors(), series("zero_load.central_gap"))
 
 
-def read_curve(tabor: float, tensors: Mapping[str, Array], gap: Series) -> Curve:
-    """Curve of a Tabor parameter from tensors of coefficients, whole numbers of a unit."""
+def table(tabor: float, count: int) -> Array:
+    """Approach and load, (2, count), at places evenly spaced from separation to compression, as `Curve.states` has.
+
+    For many Tabor parameters: sums over the places are made once for each piece of the Tabor parameter.
+    """
+    tabor = require_number(tabor, "tabor")
+    require_tabors(tabor)
+    k, by_tabor = _by_tabor(tabor, tensors())
+    further, load = np.tensordot(by_tabor, _summed_at_places(k, count), axes=1)
+    width, ends = layout(tabor, series("zero_load.central_gap"))
+    places = np.linspace(0, ends.size - 1, count)
+    return np.array([further - width * np.sinh(np.interp(places, np.arange(ends.size), ends)), load])
+
+
+@cache
+def _summed_at_places(k: int, count: int) -> Array:
+    """Coefficients in the Tabor parameter, (terms, 2, count), of approach + central gap and load at places."""
+    coefficients = tensors()["coefficients"][k][:, :2] * tensors()["units"][k][:2, :, None]
+    pieces = coefficients.shape[2]
+    places = np.linspace(0, pieces, count)
+    piece = np.clip(places.astype(int), 0, pieces - 1)
+    across = np.polynomial.chebyshev.chebvander(2 * (places - piece) - 1, coefficients.shape[3] - 1)
+    return np.asarray(np.einsum("tqnc,nc->tqn", coefficients[:, :, piece], across))
+
+
+def _by_tabor(tabor: float, tensors: Mapping[str, Array]) -> tuple[int, Array]:
+    """Piece of the Tabor parameter, and the Chebyshev polynomials on it there."""
     x, ends = math.log(tabor), tensors["ends"]
     k = int(np.clip(np.searchsorted(ends, x, side="right") - 1, 0, ends.size - 2))
     t = (2 * x - ends[k] - ends[k + 1]) / (ends[k + 1] - ends[k])
+    return k, np.polynomial.chebyshev.chebvander(t, len(tensors["coefficients"][k]) - 1)[0]
+
+
+def read_curve(tabor: float, tensors: Mapping[str, Array], gap: Series) -> Curve:
+    """Curve of a Tabor parameter from tensors of coefficients, whole numbers of a unit."""
+    k, by_tabor = _by_tabor(tabor, tensors)
     numbers = tensors["coefficients"][k]  # (terms in tabor, 3, pieces, terms)
-    (by_tabor,) = np.polynomial.chebyshev.chebvander(t, len(numbers) - 1)
     coefficients = np.tensordot(by_tabor, numbers, axes=1) * tensors["units"][k][..., None]
     return Curve(tabor, *layout(tabor, gap), np.swapaxes(coefficients, 1, 2).copy(), tensors["errors"][k])

@@ -1,0 +1,187 @@
+"""Force that an apparatus records: a curve of a theory, seen by a spring whose base travels.
+
+The base of a spring of stiffness k stands at b = alpha* + W/k. On the way in the contact follows the separated branch
+up to the first turn of b, takes off there and lands on the contact branch; on the way out it follows the contact
+branch down to the last turn and tears off. What lies between is unstable: no apparatus of that stiffness records it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from halfspace import atlas
+from halfspace.atlas.series import LEAST, MOST
+from halfspace.scaling import Units, contact_modulus, equivalent_radius
+from halfspace.theories import closed_forms, dmt
+from halfspace.theories.maugis import MaugisDugdale
+from halfspace.values import Array
+
+COUNT = 801  # places on a curve of the atlas; linear between them, the load is within 1e-3 R dgamma
+BEYOND = 160  # places on each of its two continuations
+FARTHEST = 1e5  # approach in (1 + tabor) eps to which the attraction is continued
+WIDEST = 25.0  # contact radius in beta to which the compression is continued: a load of 2e4 R dgamma
+
+Theory = Callable[[float], Array]
+"""Approach in eps and load in R dgamma, (2, n), from separation to compression, at a Tabor parameter."""
+
+
+@lru_cache(maxsize=64)  # a fit's gradient asks for the same one with other contact points and scales
+def by_atlas(tabor: float) -> Array:
+    """Curve of the atlas, continued: the attraction as h^-2, the compression by Hertz with a constant tension.
+
+    Both meet the atlas's end, the latter with its slope: 5 R dgamma and more, where Maugis's theory and it are apart
+    by 0.1 tabor eps at most up to 100 R dgamma. Beyond the atlas's Tabor parameters the curve is that of the nearest.
+    """
+    curve = atlas.table(min(max(tabor, LEAST), MOST), COUNT)
+    (first, pull), (last, push) = curve[:, 0], curve[:, -1]
+    h = (1 - first) * np.geomspace(FARTHEST * (1 + tabor) / (1 - first), 1, BEYOND)[:-1]
+    slope = np.gradient(curve[1, -3:], curve[0, -3:], edge_order=2)[-1]
+    a = slope * tabor / 2  # of the Hertz contact that is as stiff, dW/dalpha* = 2 a/mu
+    wider = np.geomspace(a, WIDEST, BEYOND)[1:]
+    alpha, load = last + tabor * (wider**2 - a**2), push + 4 / 3 * (wider**3 - a**3)
+    return np.hstack([[1 - h, pull * ((1 - first) / h) ** 2], curve, [alpha, load]])
+
+
+def by_jkr(tabor: float) -> Array:
+    """JKR's curve: no attraction before contact, so that eps is but the unit of the approach."""
+    a = WIDEST * np.linspace(0.0, 1.0, 4 * COUNT) ** 2
+    return np.hstack(
+        [_apart(tabor, 0.0, np.zeros_like), [closed_forms.jkr_approach(a, tabor), closed_forms.jkr_load(a)]]
+    )
+
+
+def by_dmt(tabor: float) -> Array:
+    """A rigid sphere until it touches, then Hertz's contact under a constant tension (DMT-M)."""
+    alpha = tabor * (WIDEST * np.linspace(0.0, 1.0, 4 * COUNT)[1:] ** 2) ** 2
+    return np.hstack([_apart(tabor, 0.0, closed_forms.bradley_load), [alpha, dmt.maugis_load(alpha, tabor)]])
+
+
+def by_maugis(tabor: float) -> Array:
+    """Maugis's curve with the largest tension of the 3-9 law."""
+    theory = MaugisDugdale.matched(tabor)
+    c = theory.touching_radius * np.linspace(0.0, 1.0, COUNT)
+    disc = theory.separated_approach(c), theory.separated_load(c)
+    a = WIDEST * np.linspace(1e-3, 1.0, 2 * COUNT) ** 2
+    return np.hstack([_apart(tabor, float(disc[0][0]), np.zeros_like), disc, [theory.approach(a), theory.load(a)]])
+
+
+def _apart(tabor: float, last: float, load: Callable[[Array], Array]) -> Array:
+    """Separation up to an approach."""
+    alpha = last - np.append(np.geomspace(FARTHEST * (1 + tabor), 1e-4, COUNT), 0.0)
+    return np.array([alpha, load(alpha)])
+
+
+THEORIES: Mapping[str, Theory] = {"atlas": by_atlas, "maugis-dugdale": by_maugis, "jkr": by_jkr, "dmt": by_dmt}
+"""Theories by name."""
+
+
+@dataclass(frozen=True)
+class Branches:
+    """The two stable branches on a spring, each as bases and loads (2, n), and the bases of take-off.
+
+    Without a turn both branches are the whole curve, and `on` and `off` where it is steepest: where a jump would be
+    born on a softer spring.
+    """
+
+    separated: Array
+    contact: Array
+    on: float
+    off: float
+
+    def place(self, segment: int) -> float:
+        """Base of the jump of a segment, 0 the approach and 1 the retract."""
+        return self.off if segment else self.on
+
+    @property
+    def jumps(self) -> bool:
+        """Whether the contact jumps."""
+        return self.off < self.on
+
+
+def branches(curve: Array, stiffness: float) -> Branches:
+    """Branches of a curve on a spring of a stiffness in R dgamma/eps."""
+    load = curve[1]
+    base = curve[0] + load / stiffness
+    falls = np.diff(base) < 0
+    tops, bottoms = np.flatnonzero(falls & ~np.roll(falls, 1)), np.flatnonzero(~falls & np.roll(falls, 1))
+    if not tops.size:
+        whole = np.array([base, load])
+        steepest = int(np.argmax(np.diff(load) / np.maximum(np.diff(base), 1e-12)))
+        at = float(base[steepest : steepest + 2].mean())
+        return Branches(whole, whole, at, at)
+    i, j = int(tops[0]), int(bottoms[-1])
+    on, off = _turn(base, load, i), _turn(base, load, j)
+    separated = np.column_stack([[base[:i], load[:i]], on])
+    contact = np.column_stack([off, [base[j + 1 :], load[j + 1 :]]])
+    return Branches(separated, contact, float(on[0]), float(off[0]))
+
+
+def _turn(base: Array, load: Array, i: int) -> Array:
+    """Base and load where the base turns, by the parabola through three places."""
+    (before, at, after), w = base[i - 1 : i + 2], load[i - 1 : i + 2]
+    rate, bend = (after - before) / 2, after - 2 * at + before
+    t = -rate / bend
+    return np.array([at + rate * t / 2, w[1] + t * (w[2] - w[0]) / 2 + t**2 * (w[2] - 2 * w[1] + w[0]) / 2])
+
+
+@dataclass(frozen=True)
+class Apparatus:
+    """A contact and what records it, in SI.
+
+    Parameters
+    ----------
+    radius, modulus : float
+        Of the sphere, in m and Pa (Young's).
+    work_of_adhesion, spacing : float
+        In J/m^2 and m.
+    contact_point : float
+        Travel in m at which alpha* + W/k is zero.
+    stiffness : float
+        Of the spring, in N/m.
+    sensitivity : float
+        True deflection over the recorded one.
+    compliance : float
+        Of what else yields in series with the spring, in m/N.
+    """
+
+    radius: float
+    modulus: float
+    work_of_adhesion: float
+    spacing: float
+    contact_point: float
+    stiffness: float
+    sensitivity: float = 1.0
+    compliance: float = 0.0
+
+
+@dataclass(frozen=True)
+class Other:
+    """What is not fitted: Poisson's ratio, and the other body, rigid and flat unless given."""
+
+    poisson: float
+    counter_modulus: float = np.inf
+    counter_poisson: float = 0.0
+    counter_radius: float = np.inf
+
+    def units(self, apparatus: Apparatus) -> Units:
+        """Units of the contact."""
+        modulus = contact_modulus(apparatus.modulus, self.poisson, self.counter_modulus, self.counter_poisson)
+        radius = equivalent_radius(apparatus.radius, self.counter_radius)
+        return Units(radius, modulus, apparatus.work_of_adhesion, apparatus.spacing)
+
+
+def recorded(theory: Theory, apparatus: Apparatus, units: Units, nominal: float | None = None) -> Branches:
+    """Branches as an apparatus records them: travels in m and forces in N, offset and drift left out.
+
+    A force that was computed from a deflection by a nominal stiffness is wrong as that is.
+    """
+    compliance = 1 / apparatus.stiffness + apparatus.compliance
+    found = branches(theory(units.tabor), 1 / (compliance * units.stiffness))
+    force = units.load / apparatus.sensitivity * (nominal / apparatus.stiffness if nominal else 1.0)
+    scale, origin = np.array([[units.spacing], [force]]), np.array([[apparatus.contact_point], [0.0]])
+    on, off = (apparatus.contact_point + units.spacing * at for at in (found.on, found.off))
+    return Branches(origin + scale * found.separated, origin + scale * found.contact, on, off)
