@@ -1,0 +1,297 @@
+"""The fit of a measured curve: start, best values, intervals, other models beside it, and what the curve leaves open."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.stats import chi2, norm
+
+from fem_adhesion.fitting.inference import Best, Data, Given, Place, Problem, Run
+from fem_adhesion.fitting.measured import APPROACH, ForceCurve, read
+from fem_adhesion.fitting.model import THEORIES, Apparatus, Other
+from fem_adhesion.fitting.prepare import Jump, Prepared, prepare
+from halfspace.errors import InputError
+from halfspace.limits import require_one_of, require_poisson
+from halfspace.values import Array
+
+TABORS = np.geomspace(0.01, 300.0, 14)  # from which fits start; between two of them a curve changes by its half at most
+ATLAS = "atlas"
+UNITS: Mapping[str, str] = {
+    "work_of_adhesion": "J/m^2",
+    "spacing": "m",
+    "contact_point": "m",
+    "radius": "m",
+    "modulus": "Pa",
+    "stiffness": "N/m",
+    "sensitivity": "",
+    "compliance": "m/N",
+}
+"""Parameters and their units in SI."""
+RANGE = 7.0  # coordinates to which an end is looked for: a factor of a thousand
+WHITE = 1e-3  # chance below which residuals are no noise
+SMALL = 1.1  # chi square per degree of freedom that the baseline's noise may be off by
+
+
+@dataclass(frozen=True)
+class Value:
+    """A fitted quantity in SI, with the ends of its interval at 95 %; an end that the curve leaves open is None."""
+
+    value: float
+    low: float | None
+    high: float | None
+    unit: str
+
+    @property
+    def identified(self) -> bool:
+        """Whether both ends are known."""
+        return self.low is not None and self.high is not None
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A model that was fitted beside the others.
+
+    Attributes
+    ----------
+    chi2 : float
+        Sum of the squared residuals in standard deviations of the noise.
+    criterion : float
+        Akaike's, chi2 + 2 x parameters, over `Best.scale` of the best model: less by 2 is e times as likely.
+    """
+
+    name: str
+    chi2: float
+    parameters: int
+    criterion: float
+    apparatus: Apparatus
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Residuals on a branch: samples, mean square in those of the noise, and the chance of so few runs of one sign."""
+
+    segment: str
+    branch: str
+    samples: int
+    mean_square: float
+    chance: float
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A fitted curve.
+
+    Attributes
+    ----------
+    prepared : Prepared
+        The curve and what was found in it without a model.
+    values : mapping of str to Value
+        Work of adhesion, spacing, contact point and what else was fitted.
+    best : Best
+        The fit itself: its problem with data and theory, coordinates, Jacobian.
+    candidates : tuple of Candidate
+        All models, the most likely first.
+    branches : tuple of Branch
+        Residuals by branch.
+    contour : (2, n) array
+        Contour of work of adhesion and spacing at 95 %, in SI.
+    """
+
+    prepared: Prepared
+    values: Mapping[str, Value]
+    best: Best
+    candidates: tuple[Candidate, ...]
+    branches: tuple[Branch, ...]
+    contour: Array
+
+    @property
+    def model(self) -> str:
+        """The most likely model."""
+        return self.candidates[0].name
+
+    @property
+    def misfit(self) -> bool:
+        """Whether the residuals are more than the noise."""
+        most = 1 + (SMALL - 1) + norm.isf(WHITE) * math.sqrt(2 / self.best.degrees)
+        return self.best.chi2 / self.best.degrees > most or any(part.chance < WHITE / 4 for part in self.branches)
+
+
+def fit(
+    curve: ForceCurve | Path | str,
+    *,
+    radius: float | Given,
+    modulus: float | Given,
+    poisson: float,
+    stiffness: float | Given | None = None,
+    sensitivity: float | Given = 1.0,
+    compliance: float | Given = 0.0,
+    counter_modulus: float | None = None,
+    counter_poisson: float | None = None,
+    counter_radius: float | None = None,
+    models: Sequence[str] = ("maugis-dugdale", "jkr", "dmt"),
+) -> Fit:
+    """Fit work of adhesion and spacing to a measured curve, as an apparatus records the contact.
+
+    Parameters
+    ----------
+    curve : ForceCurve or path
+        As `fem_adhesion.fitting.measured.read` gives it, or its file.
+    radius, modulus, stiffness, sensitivity, compliance : float or Given
+        Sphere's radius in m and Young's modulus in Pa, spring constant in N/m, true deflection over the recorded one,
+        and what else yields in series in m/N. Each exact, with a standard error, or free (an infinite one).
+    poisson : float
+        Poisson's ratio of the sphere.
+    counter_modulus, counter_poisson, counter_radius : float, optional
+        Those of the other body, which is rigid and flat unless given.
+    models : sequence of str
+        Fitted beside the atlas: names in `fem_adhesion.fitting.model.THEORIES`.
+
+    Raises
+    ------
+    InputError
+        If the curve cannot be used, or a quantity is out of range or missing.
+    """
+    nominal = stiffness.value if isinstance(stiffness, Given) else stiffness
+    if not isinstance(curve, ForceCurve):
+        curve = read(Path(curve), stiffness=nominal)
+    if stiffness is None:
+        stiffness = curve.stiffness
+    if stiffness is None:
+        raise InputError("stiffness = None, limit: a spring; give it, as 0.2N/m")
+    named = {"radius": radius, "modulus": modulus, "stiffness": stiffness}
+    named |= {"sensitivity": sensitivity, "compliance": compliance}
+    given = {name: each if isinstance(each, Given) else Given(each) for name, each in named.items()}
+    if (counter_modulus is None) != (counter_poisson is None):
+        raise InputError("counter_modulus without counter_poisson, limit: both or none; give the other too")
+    other = Other(
+        require_poisson(poisson),
+        math.inf if counter_modulus is None else counter_modulus,
+        0.0 if counter_poisson is None else counter_poisson,
+        math.inf if counter_radius is None else counter_radius,
+    )
+    for name in models:
+        require_one_of(name, "model", tuple(THEORIES))
+    prepared = prepare(curve)
+    found = {name: best_of(name, prepared, given, other) for name in dict.fromkeys((ATLAS, *models))}
+    best = found[ATLAS]
+    values, contour = _values(best)
+    return Fit(prepared, values, best, _candidates(found), _branches(best), contour)
+
+
+def data_of(prepared: Prepared, stiffness: float) -> Data:
+    """Samples by branch, with the places of the jumps that were found.
+
+    A sample is taken when the base is anywhere within a step, and the noise moves the spring across its turn.
+    """
+    curve = prepared.curve
+    travel = curve.travel + (curve.force - prepared.background) / stiffness * (curve.coordinate == APPROACH)
+    runs, places = list[Run](), list[Place]()
+    segments = (curve.approach, prepared.jump_on, "on"), (curve.retract, prepared.jump_off, "off")
+    for segment, (samples, jump, name) in enumerate(segments):
+        if jump is None:
+            runs.append(Run(segment, "both", samples))
+            continue
+        order = ("contact", "separated") if segment else ("separated", "contact")
+        parts = slice(samples.start, jump.last + 1), slice(jump.first, samples.stop)
+        runs += [Run(segment, branch, part) for branch, part in zip(order, parts, strict=True)]
+        places.append(_place(name, jump, travel, prepared.noise / stiffness))
+    noise = max(prepared.noise, 1e-6 * prepared.pull_off)  # a curve without noise is one of a millionth
+    return Data(travel, curve.force - prepared.background, tuple(runs), tuple(places), noise, prepared.correlation)
+
+
+def _place(name: str, jump: Jump, travel: Array, noise: float) -> Place:
+    step = float(np.median(np.abs(np.diff(travel[max(jump.last - 20, 0) : jump.last + 1]))))
+    apart = max(step, abs(travel[jump.first] - travel[jump.last]))
+    del noise
+    return Place(name, float(travel[jump.last] + travel[jump.first]) / 2, apart / math.sqrt(12))
+
+
+def best_of(name: str, prepared: Prepared, given: Mapping[str, Given], other: Other) -> Best:
+    """Best fit of a model, from starts at all Tabor parameters; JKR's has no spacing to fit."""
+    prior = {key: each for key, each in given.items() if 0 < each.error < math.inf}
+    moved = tuple(key for key, each in given.items() if each.error > 0)
+    nominal = given["stiffness"].value if prepared.curve.deflection_given else None
+    data = data_of(prepared, given["stiffness"].value)
+    start = {key: each.value for key, each in given.items()}
+    work = prepared.pull_off * start["sensitivity"] / (1.75 * math.pi * start["radius"])
+    fitted = ("work_of_adhesion", "contact_point", *moved)
+    found = list[Best]()
+    for tabor in TABORS[-1:] if name == "jkr" else TABORS:
+        apparatus = Apparatus(**start, work_of_adhesion=work, spacing=1.0, contact_point=0.0)
+        spacing = other.units(apparatus).tabor / float(tabor)
+        problem = Problem(
+            THEORIES[name], other, data, replace(apparatus, spacing=spacing), fitted, prior, nominal
+        )
+        problem = replace(problem, start=replace(problem.start, contact_point=_first_contact(problem, prepared)))
+        found.append(problem.settled(np.zeros(len(fitted))))
+    best = min(found, key=lambda one: one.chi2)
+    if name == "jkr":
+        return best
+    problem = replace(best.problem, start=best.apparatus, fitted=("work_of_adhesion", "spacing", *fitted[1:]), data=data)
+    return problem.settled(np.zeros(len(problem.fitted)))
+
+
+def _first_contact(problem: Problem, prepared: Prepared) -> float:
+    """Contact point at which the model's jumps are where the data's are; without any, as its force says."""
+    found = problem.branches(problem.start)
+    if problem.data.places:
+        return float(np.mean([at.travel - found.place(int(at.jump == "off")) for at in problem.data.places]))
+    base, force = found.contact
+    least = int(np.argmin(force))
+    return prepared.contact - float(np.interp(0.0, force[least:], base[least:]))
+
+
+def _values(best: Best) -> tuple[dict[str, Value], Array]:
+    """Values with intervals in SI, and the contour of work of adhesion and spacing."""
+    problem, apparatus = best.problem, best.apparatus
+    units = problem.other.units(apparatus)
+    spacing = tuple(problem.coordinate("spacing", units.tabor * units.spacing / float(tabor)) for tabor in TABORS[[-1, 0]])
+    found, ends = dict[str, Value](), dict[str, tuple[float | None, float | None]]()
+    for name in problem.fitted:
+        limits = spacing if name == "spacing" else (best.x[problem.fitted.index(name)] + side * RANGE for side in (-1, 1))
+        ends[name] = best.interval(name, tuple(limits))
+        low, high = (None if end is None else problem.value(name, end) for end in ends[name])
+        found[name] = Value(getattr(apparatus, name), low, high, UNITS[name])
+    low, high = (limit if end is None else end for limit, end in zip(spacing, ends["spacing"], strict=True))
+    middle = problem.coordinate("spacing", apparatus.spacing)
+    contour = best.contour(("work_of_adhesion", "spacing"), (middle + 1.3 * (low - middle), middle + 1.3 * (high - middle)))
+    works, spacings = (
+        [problem.value(name, x) for x in row] for name, row in zip(("work_of_adhesion", "spacing"), contour, strict=True)
+    )
+    return found, np.array([works, spacings])
+
+
+def _candidates(found: Mapping[str, Best]) -> tuple[Candidate, ...]:
+    """Models by their criterion, on the noise that the best of them leaves."""
+    scale = min(best.scale for best in found.values())
+    made = [
+        Candidate(name, best.chi2, best.x.size, best.chi2 / scale + 2 * best.x.size, best.apparatus)
+        for name, best in found.items()
+    ]
+    return tuple(sorted(made, key=lambda one: one.criterion))
+
+
+def _branches(best: Best) -> tuple[Branch, ...]:
+    """Mean square of the residuals and their runs of one sign (Wald & Wolfowitz), branch by branch."""
+    data, residuals, made = best.problem.data, best.problem.residuals(best.x), list[Branch]()
+    for run in data.runs:
+        count = data.travel[run.samples].size
+        own, residuals = residuals[:count], residuals[count:]
+        made.append(Branch(("approach", "retract")[run.segment], run.branch, count, float(np.mean(own**2)), _chance(own)))
+    return tuple(made)
+
+
+def _chance(residuals: Array) -> float:
+    """Chance of so few runs of one sign in noise; 1 for a handful of samples."""
+    above = residuals > 0
+    n, m = int(above.sum()), int((~above).sum())
+    if min(n, m) < 10:
+        return float(chi2.sf(np.sum(residuals**2), residuals.size))
+    mean = 2 * n * m / (n + m) + 1
+    spread = math.sqrt((mean - 1) * (mean - 2) / (n + m - 1))
+    runs = 1 + int(np.sum(above[1:] != above[:-1]))
+    return float(norm.cdf((runs - mean) / spread))
