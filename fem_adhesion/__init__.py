@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from fem_adhesion.bodies.layers import Coated, Layer, Layers
     from fem_adhesion.convergence import trace
     from fem_adhesion.crosscheck.study import compare
+    from fem_adhesion.fitting.study import fit
     from fem_adhesion.materials import LinearElastic, NeoHookean
     from fem_adhesion.scene import Scene, share_of
 
@@ -50,6 +51,7 @@ __all__ = [
     "NeoHookean",
     "Scene",
     "compare",
+    "fit",
     "share_of",
     "trace",
 ]
@@ -62,6 +64,7 @@ _HOMES = {
     **dict.fromkeys(("Scene", "share_of"), "scene"),
     "trace": "convergence",
     "compare": "crosscheck.study",
+    "fit": "fitting.study",
 }
 
 

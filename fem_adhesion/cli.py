@@ -14,6 +14,7 @@ from fem_adhesion.common.options import BAD_INPUT, COMMAND, DISAGREE, NOT_WRITTE
 from fem_adhesion.crosscheck.command import COMMAND as COMPARE
 from fem_adhesion.curve.command import COMMAND as CURVE
 from fem_adhesion.finite_sphere.command import COMMAND as FINITE_SPHERE
+from fem_adhesion.fitting.command import COMMAND as FIT
 from fem_adhesion.formulas.command import COMMAND as FORMULAS
 from fem_adhesion.greenwood.command import COMMAND as GREENWOOD
 from fem_adhesion.report.command import COMMAND as REPORT
@@ -21,7 +22,7 @@ from fem_adhesion.speed.command import COMMAND as SPEED
 from fem_adhesion.sweep.command import COMMAND as SWEEP
 from halfspace.errors import InputError, NotConverged
 
-COMMANDS = (COMPARE, CURVE, SWEEP, ASSESS, FINITE_SPHERE, SPEED, GREENWOOD, FORMULAS, BENCHMARK, REPORT)
+COMMANDS = (COMPARE, CURVE, SWEEP, ASSESS, FIT, FINITE_SPHERE, SPEED, GREENWOOD, FORMULAS, BENCHMARK, REPORT)
 
 STUDIES = ("PIL", "jinja2", "loky", "markupsafe", "matplotlib", "pint", "plotille", "rich")
 """Libraries of the extra that every command needs, the solvers none."""

@@ -197,6 +197,10 @@ class Problem:
         residuals = self.residuals(x)
         return float(residuals @ residuals)
 
+    def jacobian(self, x: Array) -> Array:
+        """Derivatives of the residuals by the coordinates."""
+        return np.asarray(least_squares(self.residuals, x, diff_step=STEPS["diff_step"], max_nfev=1).jac)
+
     def best(self, x: Array, held: str | None = None) -> Best:
         """Least squares from coordinates on, one of the parameters held or none."""
         free = np.array([name != held for name in self.fitted])

@@ -1,0 +1,105 @@
+"""``fem-adhesion fit``: work of adhesion and spacing from a measured force curve."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside
+from halfspace.errors import InputError
+
+if TYPE_CHECKING:
+    from fem_adhesion.fitting.inference import Given
+
+MEASURED = {
+    "radius": ("RADIUS", "of the sphere, as 100nm"),
+    "modulus": ("MODULUS", "its Young's modulus, as 70GPa"),
+    "stiffness": ("K", "of the cantilever, as 0.2N/m; that of the file unless given"),
+    "sensitivity": ("S", "true deflection over the recorded one; 1 unless given"),
+    "compliance": ("C", "of what else yields in series with the cantilever, as 0.5m/N; none unless given"),
+}
+FREE = "free"
+STARTS = {"radius": 20e-9, "modulus": 10e9, "stiffness": 0.1, "sensitivity": 1.0, "compliance": 0.0}
+"""Where a free quantity starts."""
+
+
+def add_options(command: Parser) -> None:
+    """Add the options."""
+    columns = "CSV with sensor_m, piezo_m or separation_m, force_N or deflection_m, and segment (approach, retract)"
+    command.add_argument("curve", type=Path, help=columns, metavar="CURVE")
+    contact = command.add_argument_group(
+        "contact", "Each with its unit: exact, with a standard error as 100+-20nm, or free, to be fitted."
+    )
+    for name, (metavar, text) in MEASURED.items():
+        contact.add_argument(f"--{name}", help=text, metavar=metavar)
+    contact.add_argument("--poisson", type=float, help="Poisson's ratio, 0 <= nu < 0.5", metavar="NU")
+    contact.add_argument("--counter-modulus", help="of the other body; rigid unless given", metavar="MODULUS")
+    contact.add_argument("--counter-radius", help="of the other body; flat unless given", metavar="RADIUS")
+    contact.add_argument("--counter-poisson", type=float, help="of the other body", metavar="NU")
+    models = "fitted beside the atlas: maugis-dugdale, jkr, dmt; all three unless given"
+    command.add_argument("--models", nargs="+", help=models, metavar="MODEL")
+    results = command.add_argument_group("results")
+    results.add_argument(
+        "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
+    )
+    results.add_argument("--plot", type=Path, help="also draw data, fit and contour: png, svg or pdf", metavar="FILE")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Fit a curve, print what is found, and write the record and the figure."""
+    from fem_adhesion.common import style
+    from fem_adhesion.fitting import figure, terminal
+    from fem_adhesion.fitting.study import fit
+
+    form = style.require_suffix(options.plot) if options.plot else ""
+    given = asked(options)
+    with all_written(json=options.json, plot=options.plot) as files:
+        found = fit(options.curve, **given)
+        if "json" in files:
+            json.dump(terminal.record(found, curve=options.curve, **given), files["json"], indent=1, allow_nan=False)
+        if "plot" in files:
+            style.write(lambda: figure.draw(found), files["plot"], form)
+        report = terminal.report(found)
+    console_beside(options.json).print(report)
+    return AGREE
+
+
+def asked(options: argparse.Namespace) -> dict[str, Any]:
+    """Arguments of `fem_adhesion.fit`, all but the curve."""
+    from fem_adhesion.common.numbers import parse
+
+    missing = [f"--{name}" for name in ("radius", "modulus", "poisson") if getattr(options, name) is None]
+    if missing:
+        raise InputError(f"{', '.join(missing)} missing, limit: radius, modulus and poisson; give it too")
+    found: dict[str, Any] = {
+        name: quantity(text, name) for name in MEASURED if (text := getattr(options, name)) is not None
+    }
+    for name in ("counter_modulus", "counter_radius"):
+        if text := getattr(options, name):
+            found[name] = parse(text, name)
+    found |= {"poisson": options.poisson, "counter_poisson": options.counter_poisson}
+    return found | ({"models": tuple(options.models)} if options.models else {})
+
+
+def quantity(text: str, name: str) -> Given:
+    """Quantity that is exact, has a standard error, or is free."""
+    from fem_adhesion.common.numbers import measured
+    from fem_adhesion.fitting.inference import Given
+
+    if text == FREE:
+        return Given(STARTS[name], math.inf)
+    return Given(*measured(text, name))
+
+
+COMMAND = Command(
+    "fit",
+    "fit work of adhesion and range to a measured force curve",
+    "Fit the contact as the apparatus meets it, with its spring and its jumps, and say what the curve leaves open. "
+    "Intervals are profile likelihoods at 95 %.",
+    "curve.csv --radius 100nm --modulus 70GPa --poisson 0.17 --stiffness 0.2N/m --json out.json --plot fit.png",
+    add_options,
+    run,
+)

@@ -1,0 +1,83 @@
+"""A fit for the terminal and as a record."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from fem_adhesion.common import record as common
+from fem_adhesion.common.facts import plain
+from fem_adhesion.common.numbers import engineering
+from fem_adhesion.common.terminal import Column, Fitted, Prose
+from fem_adhesion.fitting import words
+from fem_adhesion.fitting.study import Fit
+
+
+def report(fit: Fit) -> RenderableType:
+    """Everything for the terminal."""
+    return Group(
+        Prose(words.counted_samples(fit)),
+        *map(Prose, fit.prepared.curve.told),
+        _values(fit),
+        _branches(fit),
+        Text(),
+        Prose(words.comparison(fit)),
+        *map(Prose, words.series(fit)),
+        *(Prose(f"caution: {line}") for line in words.warnings(fit)),
+        *map(Prose, words.remedies(fit)),
+    )
+
+
+def _values(fit: Fit) -> Fitted:
+    values, units = fit.values, fit.best.problem.other.units(fit.best.apparatus)
+    columns = [
+        Column("quantity", [name.replace("_", " ") for name in values], words=True),
+        Column("value", [words.sized(value.value, value.unit) for value in values.values()]),
+        Column("95 %", [words.interval(value) for value in values.values()]),
+        Column("", ["" if value.identified else "not identified" for value in values.values()], words=True),
+    ]
+    return Fitted(columns, [f"fit of the atlas: tabor = {units.tabor:.3g}"])
+
+
+def _branches(fit: Fit) -> Fitted:
+    columns = [
+        Column("segment", [part.segment for part in fit.branches], words=True),
+        Column("branch", [part.branch for part in fit.branches], words=True),
+        Column("samples", [str(part.samples) for part in fit.branches]),
+        Column("mean square\nnoise^2", [f"{part.mean_square:.3g}" for part in fit.branches]),
+        Column("chance of the runs", [f"{part.chance:.2g}" for part in fit.branches]),
+    ]
+    return Fitted(columns, ["residuals by branch"])
+
+
+def record(fit: Fit, **options: Any) -> dict[str, Any]:
+    """Record for JSON."""
+    named = {
+        name: {**plain_value, "identified": fit.values[name].identified}
+        for name, plain_value in ((name, vars(value)) for name, value in fit.values.items())
+    }
+    degrees = fit.best.degrees
+    return {
+        **common.record(None, {}, **options),
+        **named,
+        "model": fit.model,
+        "models": plain([{"name": one.name, "chi2": one.chi2, "criterion": one.criterion} for one in fit.candidates]),
+        "misfit": {
+            "found": fit.misfit,
+            "chi2": fit.best.chi2,
+            "degrees": degrees,
+            "branches": plain([vars(part) for part in fit.branches]),
+        },
+        "contour": plain(dict(zip(("work_of_adhesion", "spacing"), fit.contour, strict=True))),
+        "warnings": list(words.warnings(fit)),
+        "told": [words.comparison(fit), *words.series(fit), *words.remedies(fit)],
+        "noise": {"value": fit.prepared.noise, "unit": "N", "correlation": fit.prepared.correlation},
+        "pull_off": {"value": fit.prepared.pull_off, "unit": "N"},
+    }
+
+
+def head(fit: Fit) -> str:
+    """One line on a fit, for a table of many."""
+    return f"dgamma {engineering(fit.values['work_of_adhesion'].value, 'J/m^2')}"

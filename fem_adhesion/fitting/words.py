@@ -1,0 +1,149 @@
+"""What a fit says and leaves open, in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from fem_adhesion.common.numbers import counted, engineering, listed
+from fem_adhesion.fitting.study import ATLAS, Fit, Value
+
+NAMES = {"work_of_adhesion": "dgamma", "spacing": "eps", "contact_point": "the contact point", "radius": "R"}
+NAMES |= {"modulus": "E", "stiffness": "the stiffness", "sensitivity": "the sensitivity"}
+NAMES |= {"compliance": "the compliance in series"}
+CLEAR = 6.0  # difference of the criterion from which one model is clearly preferred: a likelihood ratio of 20
+KNOWN = 0.5  # half width of an interval of the logarithm from which a number counts as settled
+FINER = {"noise of a third": (3.0, 1.0), "ten times as many samples at the jumps": (1.0, 10.0)}
+"""Other measurements: how much smaller the error of the samples and that of the places of the jumps are."""
+
+
+def sized(value: float, unit: str) -> str:
+    """Number with its unit."""
+    return engineering(value, unit) if unit and value else f"{value:.4g}"
+
+
+def interval(value: Value) -> str:
+    """Interval in words."""
+    low, high = (None if end is None else sized(end, value.unit) for end in (value.low, value.high))
+    if low and high:
+        return f"{low} to {high}"
+    return f"above {low}" if low else f"below {high}" if high else "any"
+
+
+def warnings(fit: Fit) -> Iterator[str]:
+    """What forbids to take the numbers as they stand."""
+    best, first = fit.best, fit.candidates[0]
+    if fit.misfit:
+        worst = max(fit.branches, key=lambda part: part.mean_square)
+        times = math.sqrt(best.chi2 / best.degrees)
+        where = f"most on the {worst.branch} branch of the {worst.segment}" if worst.branch != "both" else worst.segment
+        yield (
+            f"The atlas does not fit: its residuals are {times:.2g} times the noise of the baseline or not random, "
+            f"{where}. The intervals are widened by that factor, and hold the truth only as far as the model does."
+        )
+        held = [name for name in ("sensitivity", "compliance", "stiffness", "radius") if name not in best.problem.fitted]
+        if held:
+            yield f"Held as given: {listed([NAMES[name] for name in held])}; free what is not known for certain."
+    others = [one for one in fit.candidates if one.name != ATLAS]
+    if others and first.name != ATLAS:
+        own = next(one for one in fit.candidates if one.name == ATLAS)
+        better = own.criterion - first.criterion
+        if better > CLEAR:
+            spread = abs(math.log(first.apparatus.work_of_adhesion / own.apparatus.work_of_adhesion))
+            yield (
+                f"{first.name} fits better than the atlas, by {better:.3g} in Akaike's criterion; its dgamma differs "
+                f"by {100 * spread:.2g} %."
+            )
+    for name, value in fit.values.items():
+        if not value.identified:
+            yield open_end(fit, name, value)
+
+
+def open_end(fit: Fit, name: str, value: Value) -> str:
+    """What the curve says of a number that it does not identify, and why."""
+    hidden = [
+        text
+        for text, jump in (("on", fit.prepared.jump_on), ("off", fit.prepared.jump_off))
+        if jump is None and name == "spacing"
+    ]
+    why = f"The jump {' and the jump '.join(hidden)} is inside the noise: " if hidden else ""
+    low, high = value.low, value.high
+    if low is None and high is None:
+        return f"{why}{NAMES[name]} is not identified at all."
+    side, end = ("above", high) if low is None else ("below", low)
+    assert end is not None
+    return f"{why}{NAMES[name]} is bounded {side} only: {'below' if low is None else 'above'} {sized(end, value.unit)} at 95 %."
+
+
+def comparison(fit: Fit) -> str:
+    """Which model the data prefer, and by how much."""
+    first, *others = fit.candidates
+    alike = [one.name for one in others if one.criterion - first.criterion < CLEAR]
+    worse = [one for one in others if one.criterion - first.criterion >= CLEAR]
+    parts = [f"{first.name} and {listed(alike)} fit alike" if alike else f"{first.name} fits best"]
+    parts += [f"{one.name} is worse by {one.criterion - first.criterion:.3g}" for one in worse]
+    return f"{'; '.join(parts)} (Akaike's criterion; from {CLEAR:g} on a model is clearly worse)."
+
+
+def remedies(fit: Fit) -> Iterator[str]:
+    """For each number that is not identified, the measurements that would settle it, by the curvature at its end."""
+    problem = fit.best.problem
+    for name, value in fit.values.items():
+        end = value.high if value.low is None else value.low
+        if value.identified or end is None:
+            continue
+        x = fit.best.x.copy()
+        i = problem.fitted.index(name)
+        x[i] = problem.coordinate(name, end)
+        jacobian = problem.jacobian(problem.best(x, held=name).x)
+        samples, places = problem.data.travel.size, len(problem.data.places)
+        rows = np.arange(len(jacobian))
+        kinds = [rows < sum(problem.data.travel[run.samples].size for run in problem.data.runs)]
+        kinds.append(~kinds[0] & (rows < kinds[0].sum() + places))
+        del samples
+        helps = []
+        for what, (noise, place) in FINER.items():
+            sharper = jacobian * np.where(kinds[0], noise, np.where(kinds[1], place, 1.0))[:, None]
+            if _half_width(sharper, i) * math.sqrt(fit.best.scale) < KNOWN:
+                helps.append(what)
+        for j, moved in enumerate(problem.fitted):
+            if moved not in ("work_of_adhesion", "spacing", "contact_point", name):
+                exact = np.delete(jacobian, j, axis=1)
+                if _half_width(exact, i - (i > j)) * math.sqrt(fit.best.scale) < KNOWN:
+                    helps.append(f"{NAMES[moved]} measured apart")
+        shown = sized(end, value.unit)
+        if helps:
+            yield f"If {NAMES[name]} is near {shown}, {' or '.join(helps)} would settle it."
+        else:
+            yield (
+                f"Neither {' nor '.join(FINER)} would settle {NAMES[name]} if it is near {shown}: take a spring on which "
+                "the attraction before the jump can be followed, stiffer than the curve's steepest part there."
+            )
+
+
+def _half_width(jacobian: np.ndarray, i: int) -> float:
+    """Half of a parameter's interval at 95 % by the curvature."""
+    return 1.96 * math.sqrt(max(float(np.linalg.pinv(jacobian.T @ jacobian)[i, i]), 0.0))
+
+
+def series(fit: Fit) -> Iterator[str]:
+    """What an unknown sensitivity or compliance in series does to the work of adhesion."""
+    problem = fit.best.problem
+    for name in ("sensitivity", "compliance"):
+        if name not in problem.fitted:
+            continue
+        i, j = problem.fitted.index("work_of_adhesion"), problem.fitted.index(name)
+        covariance = np.linalg.pinv(fit.best.jacobian.T @ fit.best.jacobian)
+        correlation = covariance[i, j] / math.sqrt(covariance[i, i] * covariance[j, j])
+        slope = covariance[i, j] / covariance[j, j]
+        by = f"a per cent more of it goes with {slope:+.2g} % of dgamma" if name == "sensitivity" else ""
+        yield f"dgamma and {NAMES[name]} are fitted together, correlation {correlation:+.2f}{'; ' + by if by else ''}."
+
+
+def counted_samples(fit: Fit) -> str:
+    """How much was fitted."""
+    data = fit.best.problem.data
+    jumps = listed([f"jump {place.jump}" for place in data.places]) or "no jump"
+    return f"{counted(data.travel.size, 'sample')}, {jumps}; noise {engineering(data.noise, 'N')}, correlation {data.correlation:.2f}"
