@@ -34,18 +34,31 @@ def draw(fit: Fit) -> Figure:
         own, residuals = residuals[:count], residuals[count:]
         name = ("approach", "retract")[run.segment]
         first = name not in top.get_legend_handles_labels()[1]
-        top.plot(x[run.samples], y[run.samples], ".", markersize=2.5, color=COLOURS[run.segment], alpha=0.5, label=name if first else None)
+        top.plot(
+            x[run.samples],
+            y[run.samples],
+            ".",
+            markersize=2.5,
+            color=COLOURS[run.segment],
+            alpha=0.5,
+            label=name if first else None,
+        )
         top.plot(x[run.samples], model[run.samples] * ratio, color="black", linewidth=1.0)
         below.plot(x[run.samples], own, ".", markersize=2, color=COLOURS[run.segment])
     for at, place in ((found.on, 0), (found.off, 1)):
         if found.jumps:
             ends = [np.interp(at, *branch) * ratio for branch in (found.separated, found.contact)]
             style.arrow(top, ((at - origin) * per, ends[place]), ((at - origin) * per, ends[1 - place]), color="0.4")
-    near = (min(found.off, found.on) - origin - AROUND * width) * per, max((data.travel.max() - origin) * per, AROUND * width * per)
+    near = (
+        (min(found.off, found.on) - origin - AROUND * width) * per,
+        max((data.travel.max() - origin) * per, AROUND * width * per),
+    )
     shown = (x > near[0]) & (x < near[1])
     margin = 0.08 * float(np.ptp(y[shown]))
     top.plot([], [], color="black", label="fit, on the branch of the samples")
-    style.dress(top, "", f"force, {newton}", xlim=near, ylim=(float(y[shown].min()) - margin, float(y[shown].max()) + margin))
+    style.dress(
+        top, "", f"force, {newton}", xlim=near, ylim=(float(y[shown].min()) - margin, float(y[shown].max()) + margin)
+    )
     below.axhline(0.0, color="0.6", linewidth=0.8)
     style.dress(below, f"travel of the base from the contact point, {unit}", "residual, noise", legend=None, xlim=near)
     works, spacings = fit.contour

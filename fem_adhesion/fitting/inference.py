@@ -58,7 +58,8 @@ class Place:
 class Data:
     """What is fitted: base's travel in m and force in N, as recorded, by runs, and the places of jumps.
 
-    `noise` is the standard deviation of the force in N, `correlation` that of a sample with the next.
+    `noise` is the standard deviation of the force in N, `correlation` that of a sample with the next, `degree` that of
+    the baseline, which is fitted with the contact: fitted before, it would take part of the far attraction away.
     """
 
     travel: Array
@@ -67,6 +68,7 @@ class Data:
     places: Sequence[Place]
     noise: float
     correlation: float
+    degree: int = 1
 
     def whitened(self, values: Array) -> Array:
         """Values of the samples (n, ...), run after run, made of unit variance and uncorrelated if they are noise."""
@@ -78,13 +80,13 @@ class Data:
 
     @cached_property
     def baseline(self) -> Array:
-        """Columns (n, 4): offset and slope of the baseline of each segment; drag and drift differ between them."""
-        columns = np.zeros((self.travel.size, 4))
-        x = (self.travel - self.travel.mean()) / np.ptp(self.travel)
+        """Columns (n, 2 (degree + 1)) of the baseline: a polynomial for each segment, as drag and drift differ."""
+        x = 2 * (self.travel - self.travel.min()) / np.ptp(self.travel) - 1
+        powers = np.polynomial.legendre.legvander(x, self.degree)
+        columns = np.zeros((x.size, 2, self.degree + 1))
         for run in self.runs:
-            columns[run.samples, 2 * run.segment] = 1.0
-            columns[run.samples, 2 * run.segment + 1] = x[run.samples]
-        return columns
+            columns[run.samples, run.segment] = powers[run.samples]
+        return columns.reshape(x.size, -1)
 
     @cached_property
     def _base(self) -> tuple[Array, Array, Array]:
@@ -119,7 +121,11 @@ class Data:
         """
         if not found.jumps:
             return self
-        rest, runs, places = self.force - self.baseline @ self.compared(self.modelled(found))[1], list[Run](), list(self.places)
+        rest, runs, places = (
+            self.force - self.baseline @ self.compared(self.modelled(found))[1],
+            list[Run](),
+            list(self.places),
+        )
         noise = self.noise * math.sqrt((1 + self.correlation) / (1 - self.correlation))  # of means of many samples
         for run in self.runs:
             if run.branch != "both":
@@ -213,24 +219,29 @@ class Problem:
         found = least_squares(residuals, x[free], method="lm", **STEPS)
         there = x.copy()
         there[free] = found.x
-        return Best(self, there, 2 * float(found.cost), np.asarray(found.jac))
+        return Best(self, self, there, 2 * float(found.cost), np.asarray(found.jac))
 
-    def settled(self, x: Array) -> Best:
+    def settled(self, x: Array, held: str | None = None) -> Best:
         """Least squares where runs without a jump in the data are divided as the model has it; see `Data.divided`."""
-        found = Best(self, x, math.inf, np.empty((0, 0)))
+        runs = self.data.runs
         for _ in range(ROUNDS):
-            divided = self.data.divided(self.branches(self.apparatus(found.x)))
-            before, found = found, replace(self, data=divided).best(found.x)
-            if before.problem.data.runs == divided.runs:
+            divided = self.data.divided(self.branches(self.apparatus(x)))
+            found = replace(replace(self, data=divided).best(x, held), asked=self)
+            if runs == divided.runs:
                 break
+            x, runs = found.x, divided.runs
         return found
 
 
 @dataclass(frozen=True, eq=False)
 class Best:
-    """Where the likelihood is greatest: coordinates x, -2 ln of it, and the Jacobian of the residuals."""
+    """Where the likelihood is greatest: coordinates x, -2 ln of it, and the Jacobian of the residuals.
+
+    `asked` is the problem with the runs of the data, `problem` that with the runs as the fit divides them.
+    """
 
     problem: Problem
+    asked: Problem
     x: Array
     chi2: float
     jacobian: Array
@@ -242,8 +253,8 @@ class Best:
 
     @property
     def degrees(self) -> int:
-        """Degrees of freedom, those of the baseline's four coefficients taken off."""
-        return len(self.jacobian) - 4 - self.x.size
+        """Degrees of freedom, the coefficients of the baseline taken off."""
+        return len(self.jacobian) - self.problem.data.baseline.shape[1] - self.x.size
 
     @property
     def scale(self) -> float:
@@ -262,7 +273,9 @@ class Best:
         MINOS was tried in the place of this: of 24 curves it gave up an end of five, where the likelihood has a kink
         or a limit, and had the same ends to three digits elsewhere.
         """
-        low, high = (self._end(name, side, abs(limit - self._at(name))) for side, limit in zip((-1, 1), limits, strict=True))
+        low, high = (
+            self._end(name, side, abs(limit - self._at(name))) for side, limit in zip((-1, 1), limits, strict=True)
+        )
         return low, high
 
     def _at(self, name: str) -> float:
@@ -277,7 +290,7 @@ class Best:
             if t not in known:
                 x = known[min(known, key=lambda other: abs(other - t))][1].copy()
                 x[i] = self.x[i] + side * t
-                found = self.problem.best(x, held=name)
+                found = self.asked.settled(x, held=name)
                 known[t] = found.chi2 - self.chi2 - rise, found.x
             return known[t][0]
 
@@ -301,7 +314,7 @@ class Best:
             for value in np.linspace(self.x[j], end, count):
                 x = x.copy()
                 x[j] = value
-                found = self.problem.best(x, held=names[1])
+                found = self.asked.settled(x, held=names[1])
                 x, rest = found.x, level - (found.chi2 - self.chi2)
                 if rest > 0:
                     k = i - (i > j)

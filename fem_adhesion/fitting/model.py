@@ -46,32 +46,35 @@ def by_atlas(tabor: float) -> Array:
     return np.hstack([[1 - h, pull * ((1 - first) / h) ** 2], curve, [alpha, load]])
 
 
+@lru_cache(maxsize=64)
 def by_jkr(tabor: float) -> Array:
     """JKR's curve: no attraction before contact, so that eps is but the unit of the approach."""
-    a = WIDEST * np.linspace(0.0, 1.0, 4 * COUNT) ** 2
+    a = WIDEST * np.linspace(0.0, 1.0, 2 * COUNT) ** 2
     return np.hstack(
         [_apart(tabor, 0.0, np.zeros_like), [closed_forms.jkr_approach(a, tabor), closed_forms.jkr_load(a)]]
     )
 
 
+@lru_cache(maxsize=64)
 def by_dmt(tabor: float) -> Array:
     """A rigid sphere until it touches, then Hertz's contact under a constant tension (DMT-M)."""
-    alpha = tabor * (WIDEST * np.linspace(0.0, 1.0, 4 * COUNT)[1:] ** 2) ** 2
+    alpha = tabor * (WIDEST * np.linspace(0.0, 1.0, 2 * COUNT)[1:] ** 2) ** 2
     return np.hstack([_apart(tabor, 0.0, closed_forms.bradley_load), [alpha, dmt.maugis_load(alpha, tabor)]])
 
 
+@lru_cache(maxsize=64)
 def by_maugis(tabor: float) -> Array:
     """Maugis's curve with the largest tension of the 3-9 law."""
     theory = MaugisDugdale.matched(tabor)
-    c = theory.touching_radius * np.linspace(0.0, 1.0, COUNT)
+    c = theory.touching_radius * np.linspace(0.0, 1.0, BEYOND)
     disc = theory.separated_approach(c), theory.separated_load(c)
-    a = WIDEST * np.linspace(1e-3, 1.0, 2 * COUNT) ** 2
+    a = WIDEST * np.linspace(1e-3, 1.0, COUNT) ** 2
     return np.hstack([_apart(tabor, float(disc[0][0]), np.zeros_like), disc, [theory.approach(a), theory.load(a)]])
 
 
 def _apart(tabor: float, last: float, load: Callable[[Array], Array]) -> Array:
     """Separation up to an approach."""
-    alpha = last - np.append(np.geomspace(FARTHEST * (1 + tabor), 1e-4, COUNT), 0.0)
+    alpha = last - np.append(np.geomspace(FARTHEST * (1 + tabor), 1e-4, 2 * BEYOND), 0.0)
     return np.array([alpha, load(alpha)])
 
 

@@ -1,4 +1,4 @@
-"""The fit of a measured curve: start, best values, intervals, other models beside it, and what the curve leaves open."""
+"""The fit of a measured curve: start, best values, intervals, and other models beside the atlas."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from halfspace.errors import InputError
 from halfspace.limits import require_one_of, require_poisson
 from halfspace.values import Array
 
-TABORS = np.geomspace(0.01, 300.0, 14)  # from which fits start; between two of them a curve changes by its half at most
+TABORS = np.geomspace(0.01, 300.0, 10)  # from which fits start; three times the next
+COARSE = 3  # every third serves the models beside the atlas, which end anywhere
 ATLAS = "atlas"
 UNITS: Mapping[str, str] = {
     "work_of_adhesion": "J/m^2",
@@ -200,7 +201,8 @@ def data_of(prepared: Prepared, stiffness: float) -> Data:
         runs += [Run(segment, branch, part) for branch, part in zip(order, parts, strict=True)]
         places.append(_place(name, jump, travel, prepared.noise / stiffness))
     noise = max(prepared.noise, 1e-6 * prepared.pull_off)  # a curve without noise is one of a millionth
-    return Data(travel, curve.force - prepared.background, tuple(runs), tuple(places), noise, prepared.correlation)
+    degree = 2 if any(line.curvature for line in prepared.baseline.values()) else 1
+    return Data(travel, curve.force, tuple(runs), tuple(places), noise, prepared.correlation, degree)
 
 
 def _place(name: str, jump: Jump, travel: Array, noise: float) -> Place:
@@ -220,18 +222,19 @@ def best_of(name: str, prepared: Prepared, given: Mapping[str, Given], other: Ot
     work = prepared.pull_off * start["sensitivity"] / (1.75 * math.pi * start["radius"])
     fitted = ("work_of_adhesion", "contact_point", *moved)
     found = list[Best]()
-    for tabor in TABORS[-1:] if name == "jkr" else TABORS:
+    starts = TABORS if name == ATLAS else TABORS[-1::-COARSE][: 1 if name == "jkr" else None]
+    for tabor in starts:
         apparatus = Apparatus(**start, work_of_adhesion=work, spacing=1.0, contact_point=0.0)
         spacing = other.units(apparatus).tabor / float(tabor)
-        problem = Problem(
-            THEORIES[name], other, data, replace(apparatus, spacing=spacing), fitted, prior, nominal
-        )
+        problem = Problem(THEORIES[name], other, data, replace(apparatus, spacing=spacing), fitted, prior, nominal)
         problem = replace(problem, start=replace(problem.start, contact_point=_first_contact(problem, prepared)))
         found.append(problem.settled(np.zeros(len(fitted))))
     best = min(found, key=lambda one: one.chi2)
     if name == "jkr":
         return best
-    problem = replace(best.problem, start=best.apparatus, fitted=("work_of_adhesion", "spacing", *fitted[1:]), data=data)
+    problem = replace(
+        best.problem, start=best.apparatus, fitted=("work_of_adhesion", "spacing", *fitted[1:]), data=data
+    )
     return problem.settled(np.zeros(len(problem.fitted)))
 
 
@@ -249,18 +252,25 @@ def _values(best: Best) -> tuple[dict[str, Value], Array]:
     """Values with intervals in SI, and the contour of work of adhesion and spacing."""
     problem, apparatus = best.problem, best.apparatus
     units = problem.other.units(apparatus)
-    spacing = tuple(problem.coordinate("spacing", units.tabor * units.spacing / float(tabor)) for tabor in TABORS[[-1, 0]])
+    spacing = tuple(
+        problem.coordinate("spacing", units.tabor * units.spacing / float(tabor)) for tabor in TABORS[[-1, 0]]
+    )
     found, ends = dict[str, Value](), dict[str, tuple[float | None, float | None]]()
     for name in problem.fitted:
-        limits = spacing if name == "spacing" else (best.x[problem.fitted.index(name)] + side * RANGE for side in (-1, 1))
+        limits = (
+            spacing if name == "spacing" else (best.x[problem.fitted.index(name)] + side * RANGE for side in (-1, 1))
+        )
         ends[name] = best.interval(name, tuple(limits))
         low, high = (None if end is None else problem.value(name, end) for end in ends[name])
         found[name] = Value(getattr(apparatus, name), low, high, UNITS[name])
     low, high = (limit if end is None else end for limit, end in zip(spacing, ends["spacing"], strict=True))
     middle = problem.coordinate("spacing", apparatus.spacing)
-    contour = best.contour(("work_of_adhesion", "spacing"), (middle + 1.3 * (low - middle), middle + 1.3 * (high - middle)))
+    contour = best.contour(
+        ("work_of_adhesion", "spacing"), (middle + 1.3 * (low - middle), middle + 1.3 * (high - middle))
+    )
     works, spacings = (
-        [problem.value(name, x) for x in row] for name, row in zip(("work_of_adhesion", "spacing"), contour, strict=True)
+        [problem.value(name, x) for x in row]
+        for name, row in zip(("work_of_adhesion", "spacing"), contour, strict=True)
     )
     return found, np.array([works, spacings])
 
@@ -281,7 +291,9 @@ def _branches(best: Best) -> tuple[Branch, ...]:
     for run in data.runs:
         count = data.travel[run.samples].size
         own, residuals = residuals[:count], residuals[count:]
-        made.append(Branch(("approach", "retract")[run.segment], run.branch, count, float(np.mean(own**2)), _chance(own)))
+        made.append(
+            Branch(("approach", "retract")[run.segment], run.branch, count, float(np.mean(own**2)), _chance(own))
+        )
     return tuple(made)
 
 

@@ -9,7 +9,6 @@ from rich.text import Text
 
 from fem_adhesion.common import record as common
 from fem_adhesion.common.facts import plain
-from fem_adhesion.common.numbers import engineering
 from fem_adhesion.common.terminal import Column, Fitted, Prose
 from fem_adhesion.fitting import words
 from fem_adhesion.fitting.study import Fit
@@ -76,8 +75,3 @@ def record(fit: Fit, **options: Any) -> dict[str, Any]:
         "noise": {"value": fit.prepared.noise, "unit": "N", "correlation": fit.prepared.correlation},
         "pull_off": {"value": fit.prepared.pull_off, "unit": "N"},
     }
-
-
-def head(fit: Fit) -> str:
-    """One line on a fit, for a table of many."""
-    return f"dgamma {engineering(fit.values['work_of_adhesion'].value, 'J/m^2')}"

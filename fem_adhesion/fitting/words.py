@@ -43,7 +43,9 @@ def warnings(fit: Fit) -> Iterator[str]:
             f"The atlas does not fit: its residuals are {times:.2g} times the noise of the baseline or not random, "
             f"{where}. The intervals are widened by that factor, and hold the truth only as far as the model does."
         )
-        held = [name for name in ("sensitivity", "compliance", "stiffness", "radius") if name not in best.problem.fitted]
+        held = [
+            name for name in ("sensitivity", "compliance", "stiffness", "radius") if name not in best.problem.fitted
+        ]
         if held:
             yield f"Held as given: {listed([NAMES[name] for name in held])}; free what is not known for certain."
     others = [one for one in fit.candidates if one.name != ATLAS]
@@ -72,9 +74,9 @@ def open_end(fit: Fit, name: str, value: Value) -> str:
     low, high = value.low, value.high
     if low is None and high is None:
         return f"{why}{NAMES[name]} is not identified at all."
-    side, end = ("above", high) if low is None else ("below", low)
-    assert end is not None
-    return f"{why}{NAMES[name]} is bounded {side} only: {'below' if low is None else 'above'} {sized(end, value.unit)} at 95 %."
+    side, end = ("below", high) if low is None else ("above", low)
+    bound = "above" if low is None else "below"
+    return f"{why}{NAMES[name]} is bounded {bound} only: {side} {sized(end or 0.0, value.unit)} at 95 %."
 
 
 def comparison(fit: Fit) -> str:
@@ -98,11 +100,10 @@ def remedies(fit: Fit) -> Iterator[str]:
         i = problem.fitted.index(name)
         x[i] = problem.coordinate(name, end)
         jacobian = problem.jacobian(problem.best(x, held=name).x)
-        samples, places = problem.data.travel.size, len(problem.data.places)
+        places = len(problem.data.places)
         rows = np.arange(len(jacobian))
         kinds = [rows < sum(problem.data.travel[run.samples].size for run in problem.data.runs)]
         kinds.append(~kinds[0] & (rows < kinds[0].sum() + places))
-        del samples
         helps = []
         for what, (noise, place) in FINER.items():
             sharper = jacobian * np.where(kinds[0], noise, np.where(kinds[1], place, 1.0))[:, None]
@@ -118,8 +119,8 @@ def remedies(fit: Fit) -> Iterator[str]:
             yield f"If {NAMES[name]} is near {shown}, {' or '.join(helps)} would settle it."
         else:
             yield (
-                f"Neither {' nor '.join(FINER)} would settle {NAMES[name]} if it is near {shown}: take a spring on which "
-                "the attraction before the jump can be followed, stiffer than the curve's steepest part there."
+                f"Neither {' nor '.join(FINER)} would settle {NAMES[name]} if it is near {shown}; a stiffer spring, on "
+                "which the attraction can be followed before the jump, would."
             )
 
 
@@ -146,4 +147,5 @@ def counted_samples(fit: Fit) -> str:
     """How much was fitted."""
     data = fit.best.problem.data
     jumps = listed([f"jump {place.jump}" for place in data.places]) or "no jump"
-    return f"{counted(data.travel.size, 'sample')}, {jumps}; noise {engineering(data.noise, 'N')}, correlation {data.correlation:.2f}"
+    noise = f"noise {engineering(data.noise, 'N')}, correlation {data.correlation:.2f}"
+    return f"{counted(data.travel.size, 'sample')}, {jumps}; {noise}"

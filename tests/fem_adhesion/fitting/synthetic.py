@@ -6,14 +6,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem_adhesion.fitting.measured import ForceCurve
 from fem_adhesion.fitting.model import Apparatus, Other, Theory, by_atlas, recorded
 
 
 @dataclass(frozen=True)
 class Synthetic:
+    """Travel in m and force in N of approach and retract, and the samples of each."""
+
     travel: np.ndarray
     force: np.ndarray
-    count: int  # of samples of a segment
+    count: int
+
+    @property
+    def curve(self) -> ForceCurve:
+        """As a measured curve."""
+        return ForceCurve("base", self.travel, self.force, slice(0, self.count), slice(self.count, None), False)
 
 
 def synthetic(
