@@ -12,7 +12,7 @@ from fem_adhesion.common.options import AGREE, Command, Parser, all_written, con
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
-    from fem_adhesion.fitting.inference import Given
+    from fem_adhesion.common.numbers import Measured
 
 MEASURED = {
     "radius": ("RADIUS", "of the sphere, as 100nm"),
@@ -84,14 +84,13 @@ def asked(options: argparse.Namespace) -> dict[str, Any]:
     return found | ({"models": tuple(options.models)} if options.models else {})
 
 
-def quantity(text: str, name: str) -> Given:
+def quantity(text: str, name: str) -> Measured:
     """Quantity that is exact, has a standard error, or is free."""
-    from fem_adhesion.common.numbers import measured
-    from fem_adhesion.fitting.inference import Given
+    from fem_adhesion.common.numbers import Measured, measured
 
     if text == FREE:
-        return Given(STARTS[name], math.inf)
-    return Given(*measured(text, name))
+        return Measured(STARTS[name], math.inf)
+    return measured(text, name)
 
 
 COMMAND = Command(

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.optimize import brentq, least_squares
 from scipy.stats import chi2 as chi2_law
 
+from fem_adhesion.common.numbers import Measured
 from fem_adhesion.fitting.model import Apparatus, Branches, Other, Theory, recorded
 from halfspace.values import Array
 
@@ -26,14 +27,6 @@ FARTHEST = 12.0  # coordinates beyond which nothing is asked for: a factor of 1e
 ROUNDS = 5  # of dividing runs and fitting; two are usual
 STEPS: Mapping[str, Any] = {"diff_step": 1e-4, "x_scale": 0.1, "xtol": 1e-5, "ftol": 1e-7, "max_nfev": 300}
 """Of least squares: derivatives over 1e-4 see past the kinks between the places of a curve."""
-
-
-@dataclass(frozen=True)
-class Given:
-    """What is known of a quantity before the fit: its value and standard error, 0 if exact, infinite if free."""
-
-    value: float
-    error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -60,6 +53,7 @@ class Data:
 
     `noise` is the standard deviation of the force in N, `correlation` that of a sample with the next, `degree` that of
     the baseline, which is fitted with the contact: fitted before, it would take part of the far attraction away.
+    `jitter` is the standard error of a sample's travel in m.
     """
 
     travel: Array
@@ -69,14 +63,23 @@ class Data:
     noise: float
     correlation: float
     degree: int = 1
+    jitter: float = 0.0
 
     def whitened(self, values: Array) -> Array:
         """Values of the samples (n, ...), run after run, made of unit variance and uncorrelated if they are noise."""
-        return np.concatenate([self._whitened(values[run.samples]) for run in self.runs])
+        return np.concatenate(
+            [_white(values[run.samples], *level) for run, level in zip(self.runs, self._levels, strict=True)]
+        )
 
-    def _whitened(self, run: Array) -> Array:
-        rest = (run[1:] - self.correlation * run[:-1]) / math.sqrt(1 - self.correlation**2)
-        return np.concatenate([run[:1], rest]) / self.noise
+    @cached_property
+    def _levels(self) -> list[tuple[float, float]]:
+        """Noise and correlation of each run: in contact an error of the travel is one of the force."""
+        levels = list[tuple[float, float]]()
+        for run in self.runs:
+            slope = float(np.ptp(self.force[run.samples]) / np.ptp(self.travel[run.samples]))
+            noise = math.hypot(self.noise, slope * self.jitter) if run.branch == "contact" else self.noise
+            levels.append((noise, self.correlation * (self.noise / noise) ** 2))
+        return levels
 
     @cached_property
     def baseline(self) -> Array:
@@ -148,6 +151,12 @@ class Data:
         return replace(self, runs=runs, places=places)
 
 
+def _white(values: Array, noise: float, correlation: float) -> Array:
+    """Values in order without noise's correlation with the next one, in standard deviations of the noise."""
+    rest = (values[1:] - correlation * values[:-1]) / math.sqrt(1 - correlation**2)
+    return np.concatenate([values[:1], rest]) / noise
+
+
 SCALES = ("radius", "modulus", "work_of_adhesion", "spacing", "stiffness", "sensitivity")
 """Positive parameters: the fitter moves their logarithms."""
 
@@ -164,7 +173,7 @@ class Problem:
     data: Data
     start: Apparatus
     fitted: tuple[str, ...]
-    prior: Mapping[str, Given]
+    prior: Mapping[str, Measured]
     recorded_stiffness: float | None = None
 
     def apparatus(self, x: Array) -> Apparatus:
@@ -175,7 +184,9 @@ class Problem:
     def value(self, name: str, x: float) -> float:
         """Value at a coordinate."""
         value: float = getattr(self.start, name)
-        return value * math.exp(x) if name in SCALES else value + x * self._unit(name)
+        if name in SCALES:
+            return value * math.exp(min(max(x, -FARTHEST), FARTHEST))
+        return value + x * self._unit(name) if name == "contact_point" else max(value + x * self._unit(name), 0.0)
 
     def coordinate(self, name: str, value: float) -> float:
         """Coordinate of a value."""
@@ -183,7 +194,8 @@ class Problem:
         return math.log(value / start) if name in SCALES else (value - start) / self._unit(name)
 
     def _unit(self, name: str) -> float:
-        return self.start.spacing if name == "contact_point" else 1 / self.start.stiffness
+        units = self.other.units(self.start)
+        return units.approach + units.displacement if name == "contact_point" else 1 / self.start.stiffness
 
     def branches(self, apparatus: Apparatus) -> Branches:
         """Branches as they are recorded."""
@@ -195,7 +207,7 @@ class Problem:
         found = self.branches(apparatus)
         samples, _ = self.data.compared(self.data.modelled(found))
         places = [((found.on if at.jump == "on" else found.off) - at.travel) / at.error for at in self.data.places]
-        known = [(getattr(apparatus, name) - given.value) / given.error for name, given in self.prior.items()]
+        known = [(getattr(apparatus, name) - given.value) / given.deviation for name, given in self.prior.items()]
         return np.concatenate([samples, places, known])
 
     def __call__(self, x: Array) -> float:
@@ -213,7 +225,7 @@ class Problem:
 
         def residuals(moved: Array) -> Array:
             at = x.copy()
-            at[free] = np.clip(moved, -FARTHEST, FARTHEST)
+            at[free] = moved
             return self.residuals(at)
 
         found = least_squares(residuals, x[free], method="lm", **STEPS)
@@ -254,7 +266,7 @@ class Best:
     @property
     def degrees(self) -> int:
         """Degrees of freedom, the coefficients of the baseline taken off."""
-        return len(self.jacobian) - self.problem.data.baseline.shape[1] - self.x.size
+        return int(len(self.jacobian) - self.problem.data.baseline.shape[1] - self.x.size)
 
     @property
     def scale(self) -> float:
@@ -263,45 +275,66 @@ class Best:
 
     def error(self, name: str) -> float:
         """Standard error of a parameter's coordinate, by the curvature."""
-        inverse = np.linalg.pinv(self.jacobian.T @ self.jacobian)
         i = self.problem.fitted.index(name)
-        return math.sqrt(self.scale * inverse[i, i])
+        return math.sqrt(self.scale * self.covariance[i, i])
 
-    def interval(self, name: str, limits: tuple[float, float]) -> tuple[float | None, float | None]:
+    @cached_property
+    def covariance(self) -> Array:
+        """Inverse of the curvature of the likelihood, of the coordinates where the noise is the baseline's."""
+        return np.asarray(np.linalg.pinv(self.jacobian.T @ self.jacobian))
+
+    def interval(
+        self, name: str, limits: tuple[float, float], others: Sequence[Best] = ()
+    ) -> tuple[float | None, float | None]:
         """Ends of a parameter's interval by the profile likelihood, in its coordinate; None if beyond the limits.
 
+        Other fits that are likely enough show how far the interval reaches at least, whatever lies between.
         MINOS was tried in the place of this: of 24 curves it gave up an end of five, where the likelihood has a kink
         or a limit, and had the same ends to three digits elsewhere.
         """
+        i, rise = self.problem.fitted.index(name), self.scale * float(chi2_law.ppf(LEVEL, 1))
+        seeds = [
+            np.array([self.problem.coordinate(key, getattr(one.apparatus, key)) for key in self.problem.fitted])
+            for one in others
+            if one.chi2 < self.chi2 + rise
+        ]
         low, high = (
-            self._end(name, side, abs(limit - self._at(name))) for side, limit in zip((-1, 1), limits, strict=True)
+            self._end(
+                name, side, side * (limit - float(self.x[i])), [x for x in seeds if side * (x[i] - self.x[i]) > 0]
+            )
+            for side, limit in zip((-1, 1), limits, strict=True)
         )
         return low, high
 
-    def _at(self, name: str) -> float:
-        return float(self.x[self.problem.fitted.index(name)])
-
-    def _end(self, name: str, side: int, limit: float) -> float | None:
+    def _end(self, name: str, side: int, limit: float, seeds: Sequence[Array]) -> float | None:
         """Coordinate where the profile has risen by the quantile, each fit from the nearest one before."""
         i, rise = self.problem.fitted.index(name), self.scale * float(chi2_law.ppf(LEVEL, 1))
-        known = {0.0: (-rise, self.x)}
+        known = {side * float(x[i] - self.x[i]): (0.0, x) for x in (self.x, *seeds)}
+        along = side * self.covariance[:, i] / self.covariance[i, i]
 
         def excess(t: float) -> float:
-            if t not in known:
-                x = known[min(known, key=lambda other: abs(other - t))][1].copy()
-                x[i] = self.x[i] + side * t
-                found = self.asked.settled(x, held=name)
+            if t not in known or not known[t][0]:
+                near = min(known, key=lambda other: abs(other - t))
+                starts = [known[near][1].copy(), known[near][1] + (t - near) * along]
+                starts[0][i] = self.x[i] + side * t
+                found = self.asked.settled(min(starts, key=self.asked), held=name)
                 known[t] = found.chi2 - self.chi2 - rise, found.x
             return known[t][0]
 
-        near, far = 0.0, min(2 * self.error(name), limit)
+        near = max(known)
+        if near >= limit:
+            return None
+        known[near] = min(known[near][0], -1e-9), known[near][1]
+        step = min(2 * self.error(name), 1.0)
+        far = min(near + step, limit)
         while excess(far) < 0:
             if far >= limit:
                 return None
-            near, far = far, min(2 * far, limit)
-        return float(self.x[i] + side * brentq(excess, near, far, xtol=1e-2 * far, rtol=1e-3))
+            step *= 2
+            near, far = far, min(far + step, limit)
+        return float(self.x[i] + side * brentq(excess, near, far, xtol=1e-2 * (far - near), rtol=1e-3))
 
-    def contour(self, names: tuple[str, str], ends: tuple[float, float], count: int = 7) -> Array:
+    def contour(self, names: tuple[str, str], ends: tuple[float, float], count: int = 5) -> Array:
         """Contour (2, n) of a pair: the second name's values between the ends, the first's where the profile says.
 
         At each value of the second the first is taken to be normal about its best value.
@@ -318,7 +351,7 @@ class Best:
                 x, rest = found.x, level - (found.chi2 - self.chi2)
                 if rest > 0:
                     k = i - (i > j)
-                    half = math.sqrt(rest * np.linalg.pinv(found.jacobian.T @ found.jacobian)[k, k])
+                    half = math.sqrt(rest * found.covariance[k, k])
                     points.append((float(value), x[i] - half, x[i] + half))
         value, low, high = np.array(sorted(points)).T
         return np.array([np.append(low, high[::-1]), np.append(value, value[::-1])])

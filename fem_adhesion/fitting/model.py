@@ -23,6 +23,10 @@ from halfspace.values import Array
 COUNT = 801  # places on a curve of the atlas; linear between them, the load is within 1e-3 R dgamma
 BEYOND = 160  # places on each of its two continuations
 FARTHEST = 1e5  # approach in (1 + tabor) eps to which the attraction is continued
+BULGE = 3 * np.pi**2 / (2.5 * 1.4**3.5)
+"""B, by which the jump under fixed grips is at that of [G97]'s fit, (abs(alpha*) + 1)^(7/2) = 3 pi^2 tabor^(3/2)."""
+
+SOFTEST = 1e4  # Tabor parameter from which on curves are JKR's but for a hundredth of tabor eps
 WIDEST = 25.0  # contact radius in beta to which the compression is continued: a load of 2e4 R dgamma
 
 Theory = Callable[[float], Array]
@@ -34,9 +38,14 @@ def by_atlas(tabor: float) -> Array:
     """Curve of the atlas, continued: the attraction as h^-2, the compression by Hertz with a constant tension.
 
     Both meet the atlas's end, the latter with its slope: 5 R dgamma and more, where Maugis's theory and it are apart
-    by 0.1 tabor eps at most up to 100 R dgamma. Beyond the atlas's Tabor parameters the curve is that of the nearest.
+    by 0.1 tabor eps at most up to 100 R dgamma. Beyond the atlas's Tabor parameters the contact is JKR's, and before
+    it the far attraction raises a bulge, alpha* = 1 - y - B tabor^(3/2) y^(-5/2) at a gap of y eps.
     """
-    curve = atlas.table(min(max(tabor, LEAST), MOST), COUNT)
+    if tabor > MOST:
+        bulge = BULGE * tabor**1.5
+        y = np.geomspace(FARTHEST * (1 + tabor), 0.5 * (2.5 * bulge) ** (2 / 7), 4 * BEYOND)
+        return np.hstack([[1 - y - bulge * y**-2.5, -8 * np.pi / 3 * y**-2], by_jkr(tabor)[:, 2 * BEYOND + 1 :]])
+    curve = atlas.table(tabor, COUNT)
     (first, pull), (last, push) = curve[:, 0], curve[:, -1]
     h = (1 - first) * np.geomspace(FARTHEST * (1 + tabor) / (1 - first), 1, BEYOND)[:-1]
     slope = np.gradient(curve[1, -3:], curve[0, -3:], edge_order=2)[-1]
@@ -180,10 +189,13 @@ class Other:
 def recorded(theory: Theory, apparatus: Apparatus, units: Units, nominal: float | None = None) -> Branches:
     """Branches as an apparatus records them: travels in m and forces in N, offset and drift left out.
 
-    A force that was computed from a deflection by a nominal stiffness is wrong as that is.
+    A force that was computed from a deflection by a nominal stiffness is wrong as that is. Outside
+    the Tabor parameters of both limits the curve is the nearest's: in eps of the rigid one, in tabor eps of JKR's.
     """
     compliance = 1 / apparatus.stiffness + apparatus.compliance
-    found = branches(theory(units.tabor), 1 / (compliance * units.stiffness))
+    curve = theory(min(max(units.tabor, LEAST), SOFTEST))
+    beyond = np.array([[max(units.tabor / SOFTEST, 1.0)], [1.0]])
+    found = branches(beyond * curve, 1 / (compliance * units.stiffness))
     force = units.load / apparatus.sensitivity * (nominal / apparatus.stiffness if nominal else 1.0)
     scale, origin = np.array([[units.spacing], [force]]), np.array([[apparatus.contact_point], [0.0]])
     on, off = (apparatus.contact_point + units.spacing * at for at in (found.on, found.off))

@@ -10,15 +10,17 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import chi2, norm
 
-from fem_adhesion.fitting.inference import Best, Data, Given, Place, Problem, Run
+from fem_adhesion.common.numbers import Measured
+from fem_adhesion.fitting.inference import LEVEL, Best, Data, Place, Problem, Run
 from fem_adhesion.fitting.measured import APPROACH, ForceCurve, read
-from fem_adhesion.fitting.model import THEORIES, Apparatus, Other
-from fem_adhesion.fitting.prepare import Jump, Prepared, prepare
+from fem_adhesion.fitting.model import SOFTEST, THEORIES, Apparatus, Other
+from fem_adhesion.fitting.prepare import Prepared, prepare
+from halfspace.atlas.series import LEAST
 from halfspace.errors import InputError
 from halfspace.limits import require_one_of, require_poisson
 from halfspace.values import Array
 
-TABORS = np.geomspace(0.01, 300.0, 10)  # from which fits start; three times the next
+TABORS = np.geomspace(LEAST, SOFTEST, 13)  # from which fits start; three times the next
 COARSE = 3  # every third serves the models beside the atlas, which end anywhere
 ATLAS = "atlas"
 UNITS: Mapping[str, str] = {
@@ -33,6 +35,9 @@ UNITS: Mapping[str, str] = {
 }
 """Parameters and their units in SI."""
 RANGE = 7.0  # coordinates to which an end is looked for: a factor of a thousand
+EXACT = float(norm.isf((1 - LEVEL) / 2))  # standard errors in half an interval
+NORMAL = float(norm.isf(0.25))  # median size of a normal error, in its standard deviation
+WIDER = 1.24  # ends of a pair's contour, in those of one of them: the root of both quantiles' ratio
 WHITE = 1e-3  # chance below which residuals are no noise
 SMALL = 1.1  # chi square per degree of freedom that the baseline's noise may be off by
 
@@ -118,18 +123,19 @@ class Fit:
     def misfit(self) -> bool:
         """Whether the residuals are more than the noise."""
         most = 1 + (SMALL - 1) + norm.isf(WHITE) * math.sqrt(2 / self.best.degrees)
-        return self.best.chi2 / self.best.degrees > most or any(part.chance < WHITE / 4 for part in self.branches)
+        loud = self.best.chi2 / self.best.degrees > most
+        return bool(loud or any(part.chance < WHITE / len(self.branches) for part in self.branches))
 
 
 def fit(
     curve: ForceCurve | Path | str,
     *,
-    radius: float | Given,
-    modulus: float | Given,
+    radius: float | Measured,
+    modulus: float | Measured,
     poisson: float,
-    stiffness: float | Given | None = None,
-    sensitivity: float | Given = 1.0,
-    compliance: float | Given = 0.0,
+    stiffness: float | Measured | None = None,
+    sensitivity: float | Measured = 1.0,
+    compliance: float | Measured = 0.0,
     counter_modulus: float | None = None,
     counter_poisson: float | None = None,
     counter_radius: float | None = None,
@@ -141,7 +147,7 @@ def fit(
     ----------
     curve : ForceCurve or path
         As `fem_adhesion.fitting.measured.read` gives it, or its file.
-    radius, modulus, stiffness, sensitivity, compliance : float or Given
+    radius, modulus, stiffness, sensitivity, compliance : float or Measured
         Sphere's radius in m and Young's modulus in Pa, spring constant in N/m, true deflection over the recorded one,
         and what else yields in series in m/N. Each exact, with a standard error, or free (an infinite one).
     poisson : float
@@ -156,7 +162,7 @@ def fit(
     InputError
         If the curve cannot be used, or a quantity is out of range or missing.
     """
-    nominal = stiffness.value if isinstance(stiffness, Given) else stiffness
+    nominal = stiffness.value if isinstance(stiffness, Measured) else stiffness
     if not isinstance(curve, ForceCurve):
         curve = read(Path(curve), stiffness=nominal)
     if stiffness is None:
@@ -165,7 +171,7 @@ def fit(
         raise InputError("stiffness = None, limit: a spring; give it, as 0.2N/m")
     named = {"radius": radius, "modulus": modulus, "stiffness": stiffness}
     named |= {"sensitivity": sensitivity, "compliance": compliance}
-    given = {name: each if isinstance(each, Given) else Given(each) for name, each in named.items()}
+    given = {name: each if isinstance(each, Measured) else Measured(each) for name, each in named.items()}
     if (counter_modulus is None) != (counter_poisson is None):
         raise InputError("counter_modulus without counter_poisson, limit: both or none; give the other too")
     other = Other(
@@ -177,16 +183,17 @@ def fit(
     for name in models:
         require_one_of(name, "model", tuple(THEORIES))
     prepared = prepare(curve)
-    found = {name: best_of(name, prepared, given, other) for name in dict.fromkeys((ATLAS, *models))}
-    best = found[ATLAS]
-    values, contour = _values(best)
+    every = {name: best_of(name, prepared, given, other) for name in dict.fromkeys((ATLAS, *models))}
+    found = {name: best for name, (best, *_) in every.items()}
+    best, *others = every[ATLAS]
+    values, contour = _values(best, others)
     return Fit(prepared, values, best, _candidates(found), _branches(best), contour)
 
 
 def data_of(prepared: Prepared, stiffness: float) -> Data:
     """Samples by branch, with the places of the jumps that were found.
 
-    A sample is taken when the base is anywhere within a step, and the noise moves the spring across its turn.
+    The base is anywhere between the samples before and after a jump: uniform, of that width over sqrt(12).
     """
     curve = prepared.curve
     travel = curve.travel + (curve.force - prepared.background) / stiffness * (curve.coordinate == APPROACH)
@@ -199,23 +206,20 @@ def data_of(prepared: Prepared, stiffness: float) -> Data:
         order = ("contact", "separated") if segment else ("separated", "contact")
         parts = slice(samples.start, jump.last + 1), slice(jump.first, samples.stop)
         runs += [Run(segment, branch, part) for branch, part in zip(order, parts, strict=True)]
-        places.append(_place(name, jump, travel, prepared.noise / stiffness))
+        ends = travel[[jump.last, jump.first]]
+        step = float(np.median(np.abs(np.diff(travel[parts[0]]))))
+        places.append(Place(name, float(ends.mean()), max(step, abs(float(np.diff(ends)[0]))) / math.sqrt(12)))
     noise = max(prepared.noise, 1e-6 * prepared.pull_off)  # a curve without noise is one of a millionth
     degree = 2 if any(line.curvature for line in prepared.baseline.values()) else 1
-    return Data(travel, curve.force, tuple(runs), tuple(places), noise, prepared.correlation, degree)
+    steady = np.diff(curve.travel[curve.approach], 2)  # of a steady travel these are its errors' alone
+    jitter = float(np.median(np.abs(steady))) / NORMAL / math.sqrt(6)
+    return Data(travel, curve.force, tuple(runs), tuple(places), noise, prepared.correlation, degree, jitter)
 
 
-def _place(name: str, jump: Jump, travel: Array, noise: float) -> Place:
-    step = float(np.median(np.abs(np.diff(travel[max(jump.last - 20, 0) : jump.last + 1]))))
-    apart = max(step, abs(travel[jump.first] - travel[jump.last]))
-    del noise
-    return Place(name, float(travel[jump.last] + travel[jump.first]) / 2, apart / math.sqrt(12))
-
-
-def best_of(name: str, prepared: Prepared, given: Mapping[str, Given], other: Other) -> Best:
-    """Best fit of a model, from starts at all Tabor parameters; JKR's has no spacing to fit."""
-    prior = {key: each for key, each in given.items() if 0 < each.error < math.inf}
-    moved = tuple(key for key, each in given.items() if each.error > 0)
+def best_of(name: str, prepared: Prepared, given: Mapping[str, Measured], other: Other) -> list[Best]:
+    """Best fit of a model, then those at fixed Tabor parameters from which it starts; JKR's has no spacing to fit."""
+    prior = {key: each for key, each in given.items() if 0 < each.deviation < math.inf}
+    moved = tuple(key for key, each in given.items() if each.deviation > 0)
     nominal = given["stiffness"].value if prepared.curve.deflection_given else None
     data = data_of(prepared, given["stiffness"].value)
     start = {key: each.value for key, each in given.items()}
@@ -231,11 +235,11 @@ def best_of(name: str, prepared: Prepared, given: Mapping[str, Given], other: Ot
         found.append(problem.settled(np.zeros(len(fitted))))
     best = min(found, key=lambda one: one.chi2)
     if name == "jkr":
-        return best
+        return [best]
     problem = replace(
         best.problem, start=best.apparatus, fitted=("work_of_adhesion", "spacing", *fitted[1:]), data=data
     )
-    return problem.settled(np.zeros(len(problem.fitted)))
+    return [problem.settled(np.zeros(len(problem.fitted))), *found]
 
 
 def _first_contact(problem: Problem, prepared: Prepared) -> float:
@@ -248,26 +252,27 @@ def _first_contact(problem: Problem, prepared: Prepared) -> float:
     return prepared.contact - float(np.interp(0.0, force[least:], base[least:]))
 
 
-def _values(best: Best) -> tuple[dict[str, Value], Array]:
+def _values(best: Best, others: Sequence[Best]) -> tuple[dict[str, Value], Array]:
     """Values with intervals in SI, and the contour of work of adhesion and spacing."""
     problem, apparatus = best.problem, best.apparatus
     units = problem.other.units(apparatus)
-    spacing = tuple(
-        problem.coordinate("spacing", units.tabor * units.spacing / float(tabor)) for tabor in TABORS[[-1, 0]]
-    )
+    first, last = (problem.coordinate("spacing", units.displacement / float(tabor)) for tabor in TABORS[[-1, 0]])
     found, ends = dict[str, Value](), dict[str, tuple[float | None, float | None]]()
     for name in problem.fitted:
-        limits = (
-            spacing if name == "spacing" else (best.x[problem.fitted.index(name)] + side * RANGE for side in (-1, 1))
-        )
-        ends[name] = best.interval(name, tuple(limits))
+        at = float(best.x[problem.fitted.index(name)])
+        if name == "contact_point":  # a nuisance: its interval is that of the curvature
+            ends[name] = at - EXACT * best.error(name), at + EXACT * best.error(name)
+        else:
+            limits = (first, last) if name == "spacing" else (at - RANGE, at + RANGE)
+            ends[name] = best.interval(name, limits, others if name == "spacing" else ())
         low, high = (None if end is None else problem.value(name, end) for end in ends[name])
         found[name] = Value(getattr(apparatus, name), low, high, UNITS[name])
-    low, high = (limit if end is None else end for limit, end in zip(spacing, ends["spacing"], strict=True))
     middle = problem.coordinate("spacing", apparatus.spacing)
-    contour = best.contour(
-        ("work_of_adhesion", "spacing"), (middle + 1.3 * (low - middle), middle + 1.3 * (high - middle))
+    low, high = (
+        limit if end is None else middle + WIDER * (end - middle)
+        for limit, end in zip((first, last), ends["spacing"], strict=True)
     )
+    contour = best.contour(("work_of_adhesion", "spacing"), (min(low, middle), max(high, middle)))
     works, spacings = (
         [problem.value(name, x) for x in row]
         for name, row in zip(("work_of_adhesion", "spacing"), contour, strict=True)

@@ -18,7 +18,7 @@ def report(fit: Fit) -> RenderableType:
     """Everything for the terminal."""
     return Group(
         Prose(words.counted_samples(fit)),
-        *map(Prose, fit.prepared.curve.told),
+        *map(Prose, fit.prepared.told),
         _values(fit),
         _branches(fit),
         Text(),

@@ -1,0 +1,136 @@
+"""Work of adhesion and spacing from curves with a known truth, and what is said where they cannot be had."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from synthetic_curves import synthetic
+
+import fem_adhesion
+from fem_adhesion import cli
+from fem_adhesion.common.numbers import Measured
+from fem_adhesion.fitting import words
+from fem_adhesion.fitting.model import Apparatus, Other, by_atlas, by_jkr, recorded
+from halfspace.atlas import curve
+
+RADIUS, POISSON, WORK = 50e-9, 0.3, 0.05
+FREE = Measured(1.0, math.inf)
+
+
+def _truth(tabor, spacing, stiffness, **more):
+    """Apparatus of a Tabor parameter on a spring of a stiffness in R dgamma/eps."""
+    modulus = math.sqrt(RADIUS * WORK**2 / (tabor * spacing) ** 3) * (1 - POISSON**2)
+    return Apparatus(RADIUS, modulus, WORK, spacing, 2e-7, stiffness * RADIUS * WORK / spacing, **more)
+
+
+def _fit(truth, noise, seed=1, theory=None, models=(), **more):
+    """Fit of a synthetic curve with noise as a part of the pull-off force."""
+    size = 2 * np.pi * RADIUS * WORK
+    rng = np.random.default_rng(seed)
+    made = {"noise": noise * size, "correlation": 0.3, "offset": 0.1 * size, "drift": 0.05 * size, "count": 250}
+    data = synthetic(truth, Other(POISSON), rng, **made, **({"theory": theory} if theory else {}))
+    given = {"radius": RADIUS, "modulus": truth.modulus, "poisson": POISSON, "stiffness": truth.stiffness}
+    return fem_adhesion.fit(data.curve, **given | {"sensitivity": FREE} | more, models=models)
+
+
+def _holds(value, truth):
+    return (value.low is None or value.low < truth) and (value.high is None or truth < value.high)
+
+
+@pytest.mark.parametrize(("tabor", "stiffness"), [(0.1, 3.0), (1.0, 0.05), (5.0, 0.5)])
+def test_the_apparatus_records_the_states_of_the_atlas(tabor, stiffness):
+    truth = _truth(tabor, 0.3e-9, stiffness, sensitivity=1.1)
+    units = Other(POISSON).units(truth)
+    found = recorded(by_atlas, truth, units)
+    for name, branch in (("separated", found.separated), ("contact", found.contact)):
+        turn = found.on if name == "separated" else found.off
+        ends = curve(tabor).branches("base", stiffness=stiffness).get(name, (-10.0, 10.0))
+        base = np.linspace(*ends, 101)[1:-1]
+        states = curve(tabor).at(base=base, stiffness=stiffness, branch=name)
+        force = np.interp(truth.contact_point + base * units.approach, *branch)
+        assert force * 1.1 / units.load == pytest.approx(states.load, abs=0.02)
+        expected = ends[1] if name == "separated" else ends[0]
+        assert not found.jumps or (turn - truth.contact_point) / units.approach == pytest.approx(expected, abs=1e-3)
+
+
+@pytest.mark.parametrize(("tabor", "stiffness", "noise"), [(0.15, 0.5, 0.002), (1.0, 0.05, 0.005), (4.0, 0.2, 0.01)])
+def test_intervals_hold_the_truth(tabor, stiffness, noise):
+    truth = _truth(tabor, 0.3e-9, stiffness, sensitivity=0.85)
+    found = _fit(truth, noise)
+    for name, value in found.values.items():
+        assert value.identified, name
+        assert _holds(value, getattr(truth, name)), name
+    assert not found.misfit
+
+
+def test_jkr_bounds_the_spacing_above_only():
+    truth = _truth(50.0, 0.01e-9, 0.05)
+    found = _fit(truth, 0.01, theory=by_jkr, models=("jkr", "dmt"))
+    work, spacing = found.values["work_of_adhesion"], found.values["spacing"]
+    assert work.identified
+    assert _holds(work, WORK)
+    assert spacing.low is None
+    assert not spacing.identified
+    assert any("eps is bounded above only: below" in line for line in words.warnings(found))
+    assert any("eps" in line for line in words.remedies(found))
+    assert found.candidates[-1].name == "dmt"
+    assert "dmt is worse by" in words.comparison(found)
+
+
+def test_a_wrong_compliance_is_a_misfit():
+    truth = _truth(1.0, 0.3e-9, 0.2, compliance=2.0 / (0.2 * RADIUS * WORK / 0.3e-9))
+    found = _fit(truth, 0.005, sensitivity=1.0)
+    assert found.misfit
+    assert any("does not fit" in line and "widened" in line for line in words.warnings(found))
+    freed = _fit(truth, 0.005, sensitivity=1.0, compliance=Measured(0.0, math.inf))
+    assert not freed.misfit
+    assert _holds(freed.values["work_of_adhesion"], WORK)
+
+
+def test_what_is_known_before_narrows_what_is_free():
+    truth = _truth(1.0, 0.3e-9, 0.05)
+    widths = []
+    for error in (0.2, 0.01):
+        value = _fit(truth, 0.01, radius=Measured(RADIUS, error * RADIUS)).values["work_of_adhesion"]
+        assert _holds(value, WORK)
+        widths.append(value.high - value.low)
+    assert widths[1] < widths[0] / 3
+
+
+@pytest.mark.parametrize("models", [["jkr"]])
+def test_the_command_writes_what_it_found(tmp_path, models, capsys):
+    truth = _truth(1.0, 0.3e-9, 0.2)
+    data = synthetic(truth, Other(POISSON), np.random.default_rng(3), noise=1e-10, count=200)
+    rows = [f"{z},{f},{'approach' if i < 200 else 'retract'}" for i, (z, f) in enumerate(zip(data.travel, data.force, strict=True))]
+    file, out, plot = tmp_path / "curve.csv", tmp_path / "out.json", tmp_path / "fit.png"
+    file.write_text("\n".join(["piezo_m,force_N,segment", *rows]))
+    given = ["--radius", "50nm", "--modulus", f"{truth.modulus}Pa", "--poisson", "0.3", "--stiffness", f"{truth.stiffness}N/m"]
+    assert cli.main(["fit", str(file), *given, "--models", *models, "--json", str(out), "--plot", str(plot)]) == 0
+    record = json.loads(out.read_text())
+    assert record["work_of_adhesion"]["low"] < WORK < record["work_of_adhesion"]["high"]
+    assert record["spacing"]["unit"] == "m"
+    assert record["spacing"]["identified"] is True
+    assert record["model"] == "atlas"
+    assert record["misfit"]["found"] is False
+    assert plot.stat().st_size > 10_000
+    assert "atlas fits best; jkr is worse by" in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--poisson", "0.3"], "--radius, --modulus missing"),
+        (["--radius", "50", "--modulus", "1GPa", "--poisson", "0.3"], "radius = 50 has no unit"),
+        (["--radius", "50nm", "--modulus", "1GPa", "--poisson", "0.3", "--models", "hertz"], 'model = "hertz" is none of'),
+        (["--radius", "50nm", "--modulus", "1GPa", "--poisson", "0.3", "--counter-modulus", "1GPa"], "both or none"),
+    ],
+)
+def test_bad_input_is_one_line(tmp_path, options, said, capsys):
+    file = tmp_path / "curve.csv"
+    z = np.concatenate([np.linspace(0, 1e-7, 100), np.linspace(1e-7, 0, 100)])
+    file.write_text("\n".join(["piezo_m,force_N", *(f"{x},{1e-9 * (x > 8e-8) * (x - 8e-8) * 1e8}" for x in z)]))
+    assert cli.main(["fit", str(file), *options, "--stiffness", "1N/m"]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
