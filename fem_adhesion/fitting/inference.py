@@ -23,6 +23,7 @@ from fem_adhesion.fitting.model import Apparatus, Branches, Other, Theory, recor
 from halfspace.values import Array
 
 LEVEL = 0.95  # of all intervals
+BLIND = 1e6  # largest ratio of two standard errors
 FARTHEST = 12.0  # coordinates beyond which nothing is asked for: a factor of 1e5
 ROUNDS = 5  # of dividing runs and fitting; two are usual
 STEPS: Mapping[str, Any] = {"diff_step": 1e-4, "x_scale": 0.1, "xtol": 1e-5, "ftol": 1e-7, "max_nfev": 300}
@@ -280,8 +281,12 @@ class Best:
 
     @cached_property
     def covariance(self) -> Array:
-        """Inverse of the curvature of the likelihood, of the coordinates where the noise is the baseline's."""
-        return np.asarray(np.linalg.pinv(self.jacobian.T @ self.jacobian))
+        """Inverse of the curvature of the likelihood, of the coordinates where the noise is the baseline's.
+
+        What the data do not show at all has a standard error of `BLIND` times that of what they show best.
+        """
+        _, sizes, directions = np.linalg.svd(self.jacobian, full_matrices=False)
+        return np.asarray((directions.T / np.maximum(sizes, sizes[0] / BLIND) ** 2) @ directions)
 
     def interval(
         self, name: str, limits: tuple[float, float], others: Sequence[Best] = ()
