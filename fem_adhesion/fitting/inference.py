@@ -54,7 +54,8 @@ class Data:
 
     `noise` is the standard deviation of the force in N, `correlation` that of a sample with the next, `degree` that of
     the baseline, which is fitted with the contact: fitted before, it would take part of the far attraction away.
-    `jitter` is the standard error of a sample's travel in m.
+    `jitter` is the standard error of a travel in m, `periods` are those of the wave in the baseline of approach
+    and of retract in m, 0 without one: a wave that stands still in contact, from the travel `standing` on.
     """
 
     travel: Array
@@ -65,6 +66,8 @@ class Data:
     correlation: float
     degree: int = 1
     jitter: float = 0.0
+    periods: tuple[float, ...] = ()
+    standing: float = math.inf
 
     def whitened(self, values: Array) -> Array:
         """Values of the samples (n, ...), run after run, made of unit variance and uncorrelated if they are noise."""
@@ -84,13 +87,19 @@ class Data:
 
     @cached_property
     def baseline(self) -> Array:
-        """Columns (n, 2 (degree + 1)) of the baseline: a polynomial for each segment, as drag and drift differ."""
+        """Columns (n, ...) of the baseline: a polynomial and a wave for each segment, as drag and drift differ."""
         x = 2 * (self.travel - self.travel.min()) / np.ptp(self.travel) - 1
-        powers = np.polynomial.legendre.legvander(x, self.degree)
-        columns = np.zeros((x.size, 2, self.degree + 1))
+        segment, apart = np.zeros(x.size), np.minimum(self.travel, self.standing)
         for run in self.runs:
-            columns[run.samples, run.segment] = powers[run.samples]
-        return columns.reshape(x.size, -1)
+            segment[run.samples] = run.segment
+            if run.branch == "contact":
+                apart[run.samples] = self.standing
+        powers = np.polynomial.legendre.legvander(x, self.degree).T
+        columns = [power * (segment == way) for way in (0, 1) for power in powers]
+        for way, period in enumerate(self.periods):
+            phase = 2 * np.pi * apart / (period or 1.0)
+            columns += [wave * (segment == way) for wave in (np.sin(phase), np.cos(phase)) if period]
+        return np.column_stack(columns)
 
     @cached_property
     def _base(self) -> tuple[Array, Array, Array]:

@@ -213,7 +213,9 @@ def data_of(prepared: Prepared, stiffness: float) -> Data:
     degree = 2 if any(line.curvature for line in prepared.baseline.values()) else 1
     steady = np.diff(curve.travel[curve.approach], 2)  # of a steady travel these are its errors' alone
     jitter = float(np.median(np.abs(steady))) / NORMAL / math.sqrt(6)
-    return Data(travel, curve.force, tuple(runs), tuple(places), noise, prepared.correlation, degree, jitter)
+    periods = tuple(line.period if line.amplitude else 0.0 for line in prepared.baseline.values())
+    forms = degree, jitter, periods, prepared.contact
+    return Data(travel, curve.force, tuple(runs), tuple(places), noise, prepared.correlation, *forms)
 
 
 def best_of(name: str, prepared: Prepared, given: Mapping[str, Measured], other: Other) -> list[Best]:

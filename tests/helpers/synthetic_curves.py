@@ -21,7 +21,9 @@ class Synthetic:
     @property
     def curve(self) -> ForceCurve:
         """As a measured curve."""
-        return ForceCurve("base", self.travel, self.force, slice(0, self.count), slice(self.count, None), False)
+        return ForceCurve(
+            "base", self.travel, self.force, slice(0, self.count), slice(self.count, 2 * self.count), False
+        )
 
 
 def synthetic(
