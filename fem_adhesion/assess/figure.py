@@ -1,4 +1,4 @@
-"""Force against separation on a cantilever, with its jumps: half-space, finite sphere and JKR."""
+"""Force against separation on a cantilever, with its jumps: half-space, finite sphere and closed theories."""
 
 from __future__ import annotations
 
@@ -23,7 +23,12 @@ LINES: tuple[dict[str, Any], ...] = (
     {"color": style.BLUE, "linewidth": 2.0},
     {"color": style.ORANGE, "linewidth": 1.8, "linestyle": style.DASHED},
 )
-BEHIND: dict[str, Any] = {"color": "0.6", "linewidth": 1.3, "linestyle": style.CHAIN, "zorder": 1}
+THEORIES: dict[str, dict[str, Any]] = {  # thin and in front, so that what they lie upon is seen beside them
+    "JKR": {"color": "0.2", "linestyle": style.CHAIN},
+    "Maugis-Dugdale": {"color": "0.45", "linestyle": style.DASHED},
+    "DMT-M": {"color": "0.45", "linestyle": style.DOTTED},
+    "rigid": {"color": "0.65", "linestyle": "-"},
+}
 Ends = tuple[float, float]
 
 
@@ -38,10 +43,11 @@ def draw(assessment: Assessment) -> Figure:
         return (1 - approach) * units.approach * 10.0**-metres, load * units.load * 10.0**-newtons
 
     figure, (axes,) = style.panels(height=5.4)
-    theory = next(m for m in assessment.theories if m.model == "JKR")
-    axes.plot(*scaled(*_line(theory, assessment)), label="JKR", **BEHIND)
     for model, look in zip(filter(None, (assessment.half_space, assessment.finite)), LINES, strict=False):
         axes.plot(*scaled(*_line(model, assessment)), label=model.model, **look)
+    for theory in assessment.theories:
+        look = {"linewidth": 1.0, "zorder": 3, **THEORIES[theory.model]}
+        axes.plot(*scaled(*_line(theory, assessment)), label=theory.model, **look)
     right = separations[1] * 10.0**-metres
     for tail, head in _jumps(assessment):
         # A jump along its load line, to the edge of the frame if it lands beyond.
@@ -51,7 +57,7 @@ def draw(assessment: Assessment) -> Figure:
         style.arrow(axes, (x, y), end, clipped=False, linewidth=1.5, color=style.RED)
         if part < 1:
             lands = f"lands at {engineering(x_end * 10.0**metres, 'm')}"
-            style.note(axes, lands, end, offset=(-6, 5), ha="right", color=style.RED)
+            style.note(axes, lands, end, offset=(-6, -14), ha="right", color=style.RED)
     axes.axhline(0, color="0.75", linewidth=0.8, zorder=0)
     labels = (
         f"separation of the undeformed surfaces, {PREFIXES[metres]}m",
