@@ -3,7 +3,7 @@ Your AFM tip
 ============
 
 A silica tip of 100 nm radius comes down on a hard surface, on a cantilever of 0.2 N/m. How hard does it stick,
-where does it jump, and which theory describes it? One command answers; the last line says which model to trust.
+where does it jump, and which theory describes it? One command answers; the first line says which model to trust.
 
 Put in your own tip: its radius, Young's modulus and Poisson's ratio, the work of adhesion, and either the Hamaker
 constant or the equilibrium spacing of the surfaces. The same command in a terminal::
