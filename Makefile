@@ -45,11 +45,13 @@ atlas: $(VENV)/installed ## make the files of the atlas anew (half an hour; CHEC
 	$(BIN)/python -m fem_adhesion.finite_sphere.atlas $(if $(CHECK),--check $(CHECK))
 
 PEERS := adhesion tamaas ngsolve
-peers: $(PEERS:%=build/peers/%/installed) $(VENV)/installed ## run other codes, each in an environment of its own, and grade them (some minutes)
+peers: $(PEERS:%=build/peers/%/installed) $(VENV)/installed ## grade other codes, each in an environment of its own (some minutes; OUT=directory of the table, peers)
 	rm -rf build/peers/runs
 	build/peers/adhesion/bin/python tests/peers/with_maugis.py build/peers/runs
 	set -e; for peer in $(PEERS); do OMP_NUM_THREADS=1 build/peers/$$peer/bin/python -W ignore tests/peers/with_$$peer.py build/peers/runs; done
-	$(BIN)/python tests/peers/table.py build/peers/runs tests/peers/peers.csv
+	$(BIN)/python tests/peers/with_halfspace.py build/peers/runs
+	$(BIN)/python tests/peers/table.py build/peers/runs $(or $(OUT),peers)
+	cp $(or $(OUT),peers)/peers.csv tests/peers
 
 build/peers/%/installed: tests/peers/requirements/%.txt
 	$(PYTHON) -m venv $(@D)

@@ -40,13 +40,15 @@ ACTS = ("tabor", "load", "radius")
 class Variant:
     """A cause in one of the ways in which it occurs; its parameter is between the ends, if they differ.
 
-    A prediction is None of a problem for which it is not known at once.
+    A prediction is None of a problem for which it is not known at once. Of numbers whose names all lack what the cause
+    `needs` it says nothing.
     """
 
     cause: str
     what: str
     predict: Callable[[Problem, float], Prediction | None]
     ends: tuple[float, float] = (1.0, 1.0)
+    needs: str = ""
 
 
 def variants() -> Iterator[Variant]:
@@ -61,7 +63,7 @@ def variants() -> Iterator[Variant]:
     for late, word in ((1, "after"), (-1, "before")):
         for few, which in ((True, "jumps"), (False, "all events")):
             what = f"{which} read off the row {word}, in steps of eps times"
-            yield Variant("sampled-jumps", what, partial(_sampled, late, few), (1e-6, 1.0))
+            yield Variant("sampled-jumps", what, partial(_sampled, late, few), (1e-6, 1.0), "jump")
     for row in data_rows("benchmark", "constants.csv"):
         powers = [float(Fraction(row[name])) for name in ACTS]
         for first, _, last in (text.partition(":") for text in row["factors"].split()):
@@ -73,7 +75,7 @@ def variants() -> Iterator[Variant]:
     for row in data_rows("benchmark", "approaches.csv"):
         parts = [float(row[name]) for name in ("one", "approach", "reduced", "gap")]
         yield Variant("displacement-for-approach", row["what"], partial(_instead, parts))
-    yield Variant("load-control-tear-off", "the pull-off given as the jump off", _torn)
+    yield Variant("load-control-tear-off", "the pull-off given as the jump off", _torn, needs="jump_off")
     yield Variant("hertz-radius-in-jkr", "JKR's force with a^2 = R alpha", partial(_theory, _musen))
     yield Variant("jkr-for-intermediate", "JKR's closed forms", partial(_theory, _jkr))
 
@@ -105,29 +107,38 @@ def _boxed(shape: float, problem: Problem, size: float) -> Prediction:
         for moved in ((approach, load), (tilted, load), (tilted, load + lacking))
     )
     values, spread = right(problem), dict[str, float]()
+    # Pressures whose sum vanishes, spread over JKR's radius a, move the body by (a/L)^2 of what a load as large does.
+    spread_out = abs(shape) * tabor * size**3 * abs(values["pull_off_load"]) * jkr.ZERO_LOAD_RADIUS**2
     for name, value in values.items():
         if math.isnan(both.get(name, math.nan) + yielding.get(name, math.nan)):
             spread[name] = math.inf if _open(name) else abs(value)
-        else:
-            values[name] += both[name] - before[name]
-            # The surface is deformed, by a fifth of the gap at most; of a box that yields, L is not that of its width.
-            spread[name] = 0.02 * abs(yielding[name] - before[name]) + (1 if shape else 0.2) * abs(
-                both[name] - yielding[name]
-            )
+            continue
+        values[name] += both[name] - before[name]
+        # The surface is deformed, by a fifth of the gap at most; of a box that yields, L is not that of its width.
+        spread[name] = (1 if shape else 0.2) * abs(both[name] - yielding[name])
+        spread[name] += 0.02 * abs(yielding[name] - before[name]) + name.endswith("approach") * spread_out
     return values, spread
+
+
+def _bend(problem: Problem) -> float:
+    """Load in R dgamma above the pull-off, a distance eps from it."""
+    approach, load = problem.curve[:2]
+    near = np.s_[max(int(np.argmin(load)) - 3, 0) : int(np.argmin(load)) + 4]
+    return float(np.polyfit(approach[near], load[near], 2)[0])
 
 
 def _coarse(sign: int, problem: Problem, part: float) -> Prediction:
     """A contact edge that is held by nodes recedes as with more work of adhesion, by JKR's powers of it.
 
-    How much more depends on where the nodes stand; the jump on, before which there is no edge, hardly changes.
+    How much more depends on where the nodes stand; the jump on, before which there is no edge, hardly changes. The
+    load ripples by as much, which moves the place where it is least.
     """
-    values, spread = right(problem), dict[str, float]()
+    values, spread, tabor = right(problem), dict[str, float](), problem.scene.tabor
     for name, value in values.items():
         before, held = name.startswith("jump_on_") and not _open(name), name == "pull_off_load"
-        spread[name] = part * (
-            abs(value) * (0.2 if before else 0.5) + (0 if before or held else 0.5 * problem.scene.tabor)
-        )
+        spread[name] = part * (abs(value) * (0.2 if before else 0.5) + (0 if before or held else 0.5 * tabor))
+    ripple = part * abs(values["pull_off_load"])
+    spread["pull_off_approach"] += math.sqrt(ripple / _bend(problem))
     for name, power in (("pull_off_load", 1.0), ("jump_off_load", 1.0), ("jump_off_approach", 2 / 3)):
         if name in values:
             values[name] *= 1 + sign * power * part
@@ -147,7 +158,8 @@ def _sampled(late: int, few: bool, problem: Problem, step: float) -> Prediction 
     values["jump_off_approach"] -= late * step / 2
     if not few:
         spread |= {f"{name}_approach": step / math.sqrt(12) for name in ("pull_off", "zero_load")}
-        spread["pull_off_load"] = (step / problem.scene.tabor) ** 2
+        values["pull_off_load"] += (above := _bend(problem) * step**2 / 12)  # the mean, nearly the spread
+        spread["pull_off_load"] = above
     return values, spread
 
 
@@ -167,15 +179,13 @@ def _instead(parts: list[float], problem: Problem, _: float) -> Prediction:
     one, alpha, reduced, gap = parts
     values = right(problem)
     for name in [name for name in values if name.endswith("_approach")]:
-        central = values[name.replace("approach", "central_gap")]
+        central = values.get(name.replace("approach", "central_gap"), math.nan)
         values[name] = one + (alpha + reduced / problem.scene.tabor) * values[name] + gap * central
     return values, {}
 
 
-def _torn(problem: Problem, _: float) -> Prediction | None:
+def _torn(problem: Problem, _: float) -> Prediction:
     values = right(problem)
-    if "jump_off_load" not in values:
-        return None
     torn = {name.replace("pull_off", "jump_off"): v for name, v in values.items() if name.startswith("pull_off")}
     return values | torn, {name: math.inf for name in values if _open(name)}
 

@@ -21,7 +21,7 @@ from fem_adhesion.benchmark.problems import KINDS, Problem
 from fem_adhesion.benchmark.submission import Number, Submitted
 from fem_adhesion.common.record import UNITS
 from halfspace.equilibrium.events import EVENTS, approach_scale
-from halfspace.values import Array
+from halfspace.values import Array, Estimate
 
 NOISE = np.geomspace(1e-9, 1e-2, 57)  # parts of a number by which a code may err: with more nothing is told
 STEP = 0.2  # of the logarithm of a parameter from trial to trial; the best is refined
@@ -34,10 +34,10 @@ SOUND = 2e-3  # part by which a number may be off beyond its digits and errors: 
 
 @dataclass(frozen=True)
 class Row:
-    """One number of theirs beside ours: ``nan`` and no digits if we have none.
+    """One number of theirs beside ours, which is nan if we have none.
 
-    The deviation is a part of our value, of approaches and gaps of `scale`; `allowed` is how far the number may be off:
-    half its last digit, the error stated and our bar.
+    `allowed` is how far the number may be off: half its last digit, the error stated and our bar. The deviation is a
+    part of `scale`: of our value, and of approaches and gaps of eps and the range of all events.
     """
 
     problem: str
@@ -46,28 +46,11 @@ class Row:
     theirs: float
     ours: float
     bar: float
-    scale: float
     allowed: float
-
-    @property
-    def deviation(self) -> float:
-        """Deviation as a part."""
-        return (self.theirs - self.ours) / self.scale
-
-    @property
-    def digits(self) -> float:
-        """Digits that are right."""
-        return -math.log10(max(abs(self.deviation), 1e-12))
-
-    @property
-    def excess(self) -> float:
-        """Part by which it is off beyond what is allowed."""
-        return math.inf if math.isnan(self.ours) else abs(self.deviation) - self.allowed / self.scale * (1 + 1e-9)
-
-    @property
-    def verdict(self) -> str:
-        """Whether it is right within what both sides say."""
-        return "does not exist" if math.isnan(self.ours) else "agrees" if self.excess <= 0 else "differs"
+    scale: float
+    deviation: float
+    digits: float
+    verdict: str
 
 
 @dataclass(frozen=True)
@@ -115,10 +98,7 @@ class Diagnosis:
                 name: {"cause": own.causes[0], "alike": own.causes[1:]} for name, own in self.problems.items()
             },
             "fits": [asdict(fit) for fit in self.whole.fits],
-            "rows": [
-                asdict(row) | {name: getattr(row, name) for name in ("deviation", "digits", "verdict")}
-                for row in self.rows
-            ],
+            "rows": [asdict(row) for row in self.rows],
         }
 
 
@@ -153,7 +133,7 @@ def _named(fits: Sequence[Sequence[Fit | None]], rows: Sequence[Row]) -> Named:
     ranked.sort(key=lambda fit: -fit.evidence)
     alike = [fit for fit in ranked if fit.misfit <= FITS]
     noise = next(fit for fit in ranked if fit.cause == "sound")
-    may = noise in alike and max(row.excess for row in rows) <= SOUND
+    may = noise in alike and all(abs(row.deviation) <= SOUND + row.allowed / row.scale for row in rows)
     if alike and (noise not in alike or alike[0].evidence - noise.evidence >= (SURE if may else LIKELY)):
         return Named([fit.cause for fit in alike if alike[0].evidence - fit.evidence < ALIKE and fit != noise], ranked)
     return Named(["sound" if may else "cannot-tell"], ranked)
@@ -161,12 +141,15 @@ def _named(fits: Sequence[Sequence[Fit | None]], rows: Sequence[Row]) -> Named:
 
 def _row(problem: Problem, number: Number) -> Row:
     values, kind = problem.values, KINDS[number.quantity]
-    ours = values.get(number.quantity)
-    value, bar = (ours.value, ours.error) if ours else (math.nan, 0.0)
-    span = approach_scale(values[f"{name}_approach"].value for name in EVENTS if f"{name}_approach" in values)
-    scale = span if kind in ("approach", "central_gap") else abs(value if ours else number.value) or 1.0
-    allowed = number.rounding + number.error + bar
-    return Row(problem.name, number.quantity, UNITS[kind], number.value, value, bar, scale, allowed)
+    ours = values.get(number.quantity, Estimate(math.nan, 0.0))
+    scale = abs(number.value if math.isnan(ours.value) else ours.value) or 1.0
+    if kind in ("approach", "central_gap"):
+        scale = approach_scale(values[f"{name}_approach"].value for name in EVENTS if f"{name}_approach" in values)
+    allowed, deviation = number.allowed + ours.error, (number.value - ours.value) / scale
+    verdict = "agrees" if abs(deviation) <= allowed / scale * (1 + 1e-9) else "differs"
+    verdict, digits = "does not exist" if math.isnan(ours.value) else verdict, -math.log10(max(abs(deviation), 1e-12))
+    sides = number.value, ours.value, ours.error
+    return Row(problem.name, number.quantity, UNITS[kind], *sides, allowed, scale, deviation, digits, verdict)
 
 
 def _fitted(variant: Variant, problem: Problem, rows: Sequence[Row]) -> Fit | None:
@@ -182,6 +165,8 @@ def _fitted(variant: Variant, problem: Problem, rows: Sequence[Row]) -> Fit | No
         return np.nan_to_num((theirs - given) / scale, nan=1.0), np.minimum(spread, 1.0)
 
     first, last = (math.log(end) for end in variant.ends)
+    if not any(variant.needs in row.quantity for row in rows):
+        return None
     if not (variant.predict(problem, variant.ends[0]) and variant.predict(problem, variant.ends[1])):
         return None
     trials, place = np.linspace(first, last, math.ceil((last - first) / STEP) + 1), first

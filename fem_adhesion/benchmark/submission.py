@@ -25,12 +25,11 @@ Rows = Iterable[tuple[str, Mapping[str, str]]]  # where each stands, and its cel
 
 @dataclass(frozen=True)
 class Number:
-    """One of their numbers, in our units: its value, half its last digit, and what error they state."""
+    """One of their numbers, in our units, and how far it may be off: half its last digit and the error they state."""
 
     quantity: str
     value: float
-    rounding: float
-    error: float
+    allowed: float
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ def _numbers(problem: Problem, rows: Rows) -> Submitted:
         value, text = _float(where, "value", row["value"]), row["value"].lower().partition("e")
         decimals = len(text[0].partition(".")[2]) - int(text[2] or 0)
         error = _float(where, "error", row["error"]) if row.get("error") else 0.0
-        found[quantity] = Number(quantity, value * size, abs(size) * 10.0**-decimals / 2, abs(error * size))
+        found[quantity] = Number(quantity, value * size, size * (10.0**-decimals / 2 + abs(error)))
     return Submitted(problem, list(found.values()))
 
 
@@ -141,4 +140,4 @@ def read_off(curve: Array) -> Iterator[Number]:
         errors = np.abs(state - coarse.get(name, 0.0))
         for kind, value, error in zip(CURVES[1:], state, errors, strict=True):
             if kind == "approach" or name == "pull_off":
-                yield Number(f"{name}_{kind}", float(value), 0.0, float(error))
+                yield Number(f"{name}_{kind}", float(value), float(error))

@@ -13,6 +13,7 @@ STUDIES = {
     "hard": "the hard cases",
     "greenwood": "Greenwood (1997)",
     "finite-sphere": "the finite sphere",
+    "peers": "the grades of other codes",
 }
 
 

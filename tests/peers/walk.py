@@ -35,6 +35,7 @@ def events(solve, problem, start, step):
     load(zero)
     least = minimize_scalar(load, bounds=(approaches[-1], approaches[-3]), method="bounded", options={"xatol": 1e-4})
     yield problem, "pull_off_load", float(least.fun), "R dgamma", ""
+    yield problem, "pull_off_approach", float(least.x), "eps", 1e-3  # the load is flat there
     yield problem, "zero_load_approach", float(zero), "eps", ""
     if not math.isnan(gap := float(states[zero][1])):
         yield problem, "zero_load_central_gap", gap, "eps", ""

@@ -3,7 +3,6 @@
 from importlib.metadata import version
 
 import numpy as np
-from Adhesion.ReferenceSolutions.MaugisDugdale import _load
 from scipy.optimize import minimize_scalar
 from walk import record
 
@@ -12,6 +11,8 @@ LAMBDAS = (0.1157, 0.2, 0.5785, 1.157, 2.314, 5.785)
 
 def pull_off(maugis):
     """Least load over the contact radius, in R dgamma."""
+    from Adhesion.ReferenceSolutions.MaugisDugdale import _load  # here, as our own environment does not have it
+
     least = minimize_scalar(
         lambda log: _load(np.exp(log), maugis), bounds=(-4, 1), method="bounded", options={"xatol": 1e-9}
     )

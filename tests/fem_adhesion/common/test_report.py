@@ -109,7 +109,7 @@ def test_the_title_of_a_long_table_says_what_is_left_out(tmp_path):
 
 def test_sections_not_computed_say_how_to(html):
     lines = {name: f"fem-adhesion {name} --out {name}" for name in ("speed", "greenwood", "finite-sphere")}
-    for name, line in {**lines, "hard": "make hard"}.items():
+    for name, line in {**lines, "hard": "make hard", "peers": "make peers"}.items():
         assert f"<code>{line}</code>, then this with <code>--{name} {name}</code>" in html
 
 
