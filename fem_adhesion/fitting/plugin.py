@@ -1,0 +1,39 @@
+"""A fit model for nanite and PyJibe, written as a module of its own."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+
+from jinja2 import StrictUndefined, Template
+
+from fem_adhesion.common.files import written_aside
+from halfspace.errors import InputError
+
+SPACING = 0.3e-9  # m, an atom's diameter
+WORK_OF_ADHESION = 0.05  # J/m^2, of van der Waals' solids in air
+
+
+def write(
+    path: Path,
+    *,
+    radius: float,
+    modulus: float,
+    poisson: float,
+    work_of_adhesion: float = WORK_OF_ADHESION,
+    spacing: float = SPACING,
+) -> None:
+    """Write the module; the quantities, in SI, are where its fits start.
+
+    InputError if nanite could not import a module of that name, or the file cannot be written.
+    """
+    if path.suffix != ".py" or not path.stem.isidentifier():
+        raise InputError(f"{path} cannot be imported, limit: a name of letters, digits and _, then .py; rename it")
+    template = files("fem_adhesion.fitting").joinpath("templates", "nanite.py.txt").read_text(encoding="utf-8")
+    values = {"radius": radius, "modulus": modulus, "poisson": poisson}
+    values |= {"work_of_adhesion": work_of_adhesion, "spacing": spacing}
+    made = Template(template, undefined=StrictUndefined, keep_trailing_newline=True)
+    text = made.render(version=version("fem-adhesion"), **{name: repr(float(value)) for name, value in values.items()})
+    with written_aside(path) as file:
+        file.write(text)

@@ -1,0 +1,92 @@
+"""Many curves at once: which, resumed, as a table, and how they differ."""
+
+import csv
+import io
+import shutil
+from pathlib import Path
+
+import pytest
+
+from fem_adhesion.common.files import open_store
+from fem_adhesion.fitting.folder import Outcome, Source, code, outcome, run, sources, spreads, told, write_csv
+from fem_adhesion.fitting.study import Value
+from halfspace.errors import InputError
+
+DATA = Path(__file__).parents[2] / "data" / "afm"
+READING = {"stiffness": None, "sensitivity": None}
+ASKED = {"radius": 10e-9, "modulus": 1e11, "poisson": 0.3}
+CALLS = []
+
+
+def _work(source, *, reading, radius, **_):
+    """Stand-in for a fit, which takes seconds: its work of adhesion is the number of the curve."""
+    assert reading == READING
+    CALLS.append(source)
+    value = Value(float(source.number + 1), 0.5, None, "J/m^2")
+    return Outcome(str(source.path), source.number, {"work_of_adhesion": value}, {"pull_off": radius, "noise": 0.0})
+
+
+@pytest.fixture
+def curves(tmp_path):
+    folder = tmp_path / "curves"
+    folder.mkdir()
+    shutil.copy(DATA / "spectroscopy_two.nid", folder)
+    (folder / "first.csv").write_text("piezo_m,force_N\n")
+    (folder / "README.md").write_text("no curve")
+    CALLS.clear()
+    return folder
+
+
+def test_a_folder_is_all_its_curves(curves):
+    nid = curves / "spectroscopy_two.nid"
+    assert sources([curves, nid]) == (Source(curves / "first.csv"), Source(nid), Source(nid, 1))
+    with pytest.raises(InputError, match="no file of a force curve"):
+        sources([curves / "README.md"])
+
+
+def test_a_study_is_resumed_and_a_changed_file_fitted_again(curves, tmp_path):
+    found = sources([curves])
+
+    def fitted(**asked):
+        store = open_store(tmp_path / "kept", code(), resume=True)
+        return run(found, READING, ASKED | asked, store, work=_work, jobs=1)
+
+    first = fitted()
+    assert fitted() == first
+    assert tuple(CALLS) == found
+    with (curves / "first.csv").open("a") as file:
+        file.write("1,2\n")
+    assert fitted() == first
+    assert CALLS[3:] == [found[0]]
+    assert fitted(radius=20e-9)[0].forces["pull_off"] == 20e-9
+    assert len(CALLS) == 7
+
+
+def test_a_curve_that_cannot_be_used_is_told_and_ends_nothing(curves):
+    (bad,) = run([Source(curves / "first.csv")], READING, ASKED, work=outcome, jobs=1)
+    assert "1 line of data" in bad.reason
+    assert not bad.values
+
+
+def _fitted(value, half):
+    return Outcome("a", 0, {"spacing": Value(value, value - half, value + half, "m")}, {"pull_off": 1e-9, "noise": 0.0})
+
+
+def test_the_spread_between_curves_stands_beside_their_intervals():
+    outcomes = [_fitted(1e-9 * (1 + i / 100), 1.96e-11) for i in range(101)]
+    spacing = next(each for each in spreads(outcomes) if each.name == "spacing")
+    assert (spacing.low, spacing.median, spacing.high) == pytest.approx((1.1e-9, 1.5e-9, 1.9e-9))
+    assert (spacing.between, spacing.within) == pytest.approx((0.34e-9, 1e-11))
+    assert "spacing differs between curves by 34 times" in told(outcomes)
+    assert "differs" not in told([_fitted(1e-9 * (1 + i / 100), 1.96e-9) for i in range(101)])
+
+
+def test_the_table_leaves_open_ends_and_refused_curves_empty():
+    forces = {"pull_off": 3e-9, "noise": 4e-12}
+    open_end = Outcome("a", 0, {"spacing": Value(1e-9, None, 2e-9, "m")}, forces, "jkr", True)
+    file = io.StringIO()
+    write_csv([open_end, Outcome("b", 7, reason="no contact")], file)
+    first, second = csv.DictReader(file.getvalue().splitlines())
+    assert (first["spacing_m"], first["spacing_low_m"], first["spacing_high_m"]) == ("1e-09", "", "2e-09")
+    assert (first["pull_off_N"], first["model"], first["misfit"]) == ("3e-09", "jkr", "yes")
+    assert (second["curve"], second["spacing_m"], second["reason"]) == ("7", "", "no contact")
