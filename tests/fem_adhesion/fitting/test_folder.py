@@ -2,11 +2,13 @@
 
 import csv
 import io
+import json
 import shutil
 from pathlib import Path
 
 import pytest
 
+from fem_adhesion import cli
 from fem_adhesion.common.files import open_store
 from fem_adhesion.fitting.folder import Outcome, Source, code, outcome, run, sources, spreads, told, write_csv
 from fem_adhesion.fitting.study import Value
@@ -90,3 +92,45 @@ def test_the_table_leaves_open_ends_and_refused_curves_empty():
     assert (first["spacing_m"], first["spacing_low_m"], first["spacing_high_m"]) == ("1e-09", "", "2e-09")
     assert (first["pull_off_N"], first["model"], first["misfit"]) == ("3e-09", "jkr", "yes")
     assert (second["curve"], second["spacing_m"], second["reason"]) == ("7", "", "no contact")
+
+
+CONTACT = ["--radius", "10nm", "--modulus", "160GPa", "--poisson", "0.27"]
+
+
+def test_the_command_fits_all_curves_of_a_file(tmp_path, capsys):
+    table, record, kept = tmp_path / "fits.csv", tmp_path / "fits.json", tmp_path / "kept"
+    names = ["--csv", str(table), "--json", str(record), "--plot", str(tmp_path / "fits.png"), "--resume", str(kept)]
+    asked = ["fit", str(DATA / "spectroscopy_two.nid"), *CONTACT, "--models", "jkr", "--jobs", "1", *names]
+    assert cli.main(asked) == 0
+    assert "2 of 2 curves fitted" in capsys.readouterr().out
+    written, times = record.read_text(), [file.stat().st_mtime_ns for file in (kept / "cases").iterdir()]
+    rows, fits = list(csv.DictReader(table.read_text().splitlines())), json.loads(written)
+    for row, one in zip(rows, fits["curves"], strict=True):
+        assert float(row["work_of_adhesion_J/m^2"]) == one["values"]["work_of_adhesion"]["value"] > 0
+    assert {each["name"] for each in fits["spread"]} == {"work_of_adhesion", "spacing", "pull_off", "noise"}
+    assert cli.main(asked) == 0
+    assert json.loads(record.read_text())["curves"] == fits["curves"]
+    assert [file.stat().st_mtime_ns for file in (kept / "cases").iterdir()] == times
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "give a file or a folder"),
+        ([str(DATA / "sin_plate.ibw"), "--csv", "x.csv"], "--csv with one curve"),
+        ([str(DATA / "workshop.csv")], "give the stiffness in N/m and sensitivity in m/V"),
+        ([str(DATA / "workshop.csv"), "--detector", "50nm"], "unit of the wrong kind"),
+        ([str(DATA / "missing")], "missing"),
+    ],
+)
+def test_what_the_command_cannot_fit_is_one_line(arguments, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["fit", *arguments, *CONTACT]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_command_writes_a_fit_model(tmp_path):
+    assert cli.main(["fit", "--nanite", str(tmp_path / "model_39.py"), *CONTACT]) == 0
+    assert 'params.add("R", value=1e-08,' in (tmp_path / "model_39.py").read_text()
