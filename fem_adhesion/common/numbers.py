@@ -36,6 +36,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "work_of_adhesion": ("J/m^2", "0.1J/m^2"),
     "stiffness": ("N/m", "0.2N/m"),
     "force": ("N", "1nN"),
+    "detector": ("m/V", "50nm/V"),
     "sensitivity": ("1", "1.1"),
     "compliance": ("m/N", "0.5m/N"),
     "poisson": ("1", "0.3"),

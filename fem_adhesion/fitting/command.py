@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside
+from fem_adhesion.common.options import AGREE, Command, Parser, add_workers, all_written, console_beside
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -29,7 +30,8 @@ STARTS = {"radius": 20e-9, "modulus": 10e9, "stiffness": 0.1, "sensitivity": 1.0
 def add_options(command: Parser) -> None:
     """Add the options."""
     columns = "CSV with sensor_m, piezo_m or separation_m, force_N or deflection_m, and segment (approach, retract)"
-    command.add_argument("curve", type=Path, help=columns, metavar="CURVE")
+    makers = "files of makers with the extras afm and nanosurf, or folders of these"
+    command.add_argument("curves", nargs="*", type=Path, help=f"{columns}; {makers}", metavar="CURVE")
     contact = command.add_argument_group(
         "contact", "Each with its unit: exact, with a standard error as 100+-20nm, or free, to be fitted."
     )
@@ -39,6 +41,8 @@ def add_options(command: Parser) -> None:
     contact.add_argument("--counter-modulus", help="of the other body; rigid unless given", metavar="MODULUS")
     contact.add_argument("--counter-radius", help="of the other body; flat unless given", metavar="RADIUS")
     contact.add_argument("--counter-poisson", type=float, help="of the other body", metavar="NU")
+    volts = "sensitivity of the detector, as 50nm/V, where the file of a maker lacks it"
+    command.add_argument("--detector", help=volts, metavar="S")
     models = "fitted beside the atlas: maugis-dugdale, jkr, dmt; all three unless given"
     command.add_argument("--models", nargs="+", help=models, metavar="MODEL")
     results = command.add_argument_group("results")
@@ -46,25 +50,72 @@ def add_options(command: Parser) -> None:
         "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
     )
     results.add_argument("--plot", type=Path, help="also draw data, fit and contour: png, svg or pdf", metavar="FILE")
+    results.add_argument("--nanite", type=Path, help="write a fit model for nanite and PyJibe", metavar="FILE.py")
+    many = command.add_argument_group("many curves")
+    many.add_argument("--csv", type=Path, help="also write the table, - for standard output", metavar="FILE")
+    resume = "keep fits in the directory as soon as they are there, and go on with those it holds"
+    many.add_argument("--resume", type=Path, help=resume, metavar="DIR")
+    add_workers(command)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Fit a curve, print what is found, and write the record and the figure."""
+    """Fit the curves, print what is found, and write what is asked for.
+
+    Returns
+    -------
+    int
+        1 if one of many curves was not fitted, else 0.
+    """
+    from fem_adhesion.fitting.measured import count
+
+    given = asked(options)
+    if options.nanite:
+        _write_plugin(options.nanite, given)
+    if not options.curves:
+        if options.nanite:
+            return AGREE
+        raise InputError("no curve, limit: one or more; give a file or a folder")
+    stiffness = given.get("stiffness")
+    reading = {"stiffness": stiffness and stiffness.value, "sensitivity": _detector(options.detector)}
+    first = options.curves[0]
+    if len(options.curves) > 1 or first.is_dir() or count(first, **reading) > 1:
+        from fem_adhesion.fitting.many import fit_all
+
+        return fit_all(options, options.curves, reading, given)
+    for name in ("csv", "resume"):
+        if getattr(options, name):
+            raise InputError(f"--{name} with one curve, limit: many; give a folder or write --json")
+    return _fit_one(options, reading, given)
+
+
+def _fit_one(options: argparse.Namespace, reading: Mapping[str, float | None], given: Mapping[str, Any]) -> int:
     from fem_adhesion.common import style
     from fem_adhesion.fitting import figure, terminal
+    from fem_adhesion.fitting.measured import read
     from fem_adhesion.fitting.study import fit
 
-    form = style.require_suffix(options.plot) if options.plot else ""
-    given = asked(options)
+    (path,), form = options.curves, style.require_suffix(options.plot) if options.plot else ""
     with all_written(json=options.json, plot=options.plot) as files:
-        found = fit(options.curve, **given)
+        found = fit(read(path, stiffness=reading["stiffness"], sensitivity=reading["sensitivity"]), **given)
         if "json" in files:
-            json.dump(terminal.record(found, curve=options.curve, **given), files["json"], indent=1, allow_nan=False)
+            json.dump(terminal.record(found, curve=path, **given), files["json"], indent=1, allow_nan=False)
         if "plot" in files:
             style.write(lambda: figure.draw(found), files["plot"], form)
         report = terminal.report(found)
     console_beside(options.json).print(report)
     return AGREE
+
+
+def _write_plugin(path: Path, given: Mapping[str, Any]) -> None:
+    from fem_adhesion.fitting import plugin
+
+    plugin.write(path, radius=given["radius"].value, modulus=given["modulus"].value, poisson=given["poisson"])
+
+
+def _detector(text: str | None) -> float | None:
+    from fem_adhesion.common.numbers import parse
+
+    return parse(text, "detector") if text else None
 
 
 def asked(options: argparse.Namespace) -> dict[str, Any]:

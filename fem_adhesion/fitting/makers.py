@@ -89,7 +89,7 @@ def _afmformats(path: Path, stiffness: float | None, sensitivity: float | None) 
             missing = [name for name in GIVEN if name in str(error)]
             if not given and known.keys() >= set(missing):
                 return tried(meta_override={name: known[name] for name in missing})
-            words = listed([GIVEN[name] for name in missing]) or str(error)
+            words = listed([GIVEN[name] for name in missing if name not in known]) or str(error)
             raise InputError(f"{path} lacks what makes forces of its voltages; give the {words}") from error
         except (Exception, library.errors.AFMFileFormatError) as error:  # of a damaged file its readers raise anything
             raise InputError(f"{path} cannot be read as {path.suffix} ({_why(error)}); save it as CSV") from error

@@ -34,6 +34,6 @@ def write(
     values = {"radius": radius, "modulus": modulus, "poisson": poisson}
     values |= {"work_of_adhesion": work_of_adhesion, "spacing": spacing}
     made = Template(template, undefined=StrictUndefined, keep_trailing_newline=True)
-    text = made.render(version=version("fem-adhesion"), **{name: repr(float(value)) for name, value in values.items()})
+    text = made.render(version=version("fem-adhesion"), **{name: f"{value:.12g}" for name, value in values.items()})
     with written_aside(path) as file:
         file.write(text)
