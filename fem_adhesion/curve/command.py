@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
 
-NOT_BY_WEAK_FORM = ("vtk", "render", "movie", "at", "beside", "points", "stiffness")
+NOT_BY_WEAK_FORM = ("vtk", "render", "movie", "stress", "at", "beside", "points", "stiffness")
 
 
 def add_options(command: Parser) -> None:
@@ -53,8 +53,10 @@ def add_options(command: Parser) -> None:
         ("render", "FILE", Path, "draw the body cut open, with its stress: png"),
     ):
         results.add_argument(f"--{name}", type=kind, help=text, metavar=metavar)
+    where = "write the stress inside along the axis or the surface, or at points of a table r_nm,depth_nm, as a table"
+    results.add_argument("--stress", nargs=2, help=where, metavar=("WHERE", "FILE"))
     events = ("pull_off", "jump_on", "jump_off", "zero_load")
-    results.add_argument("--at", choices=events, help="event that is drawn; pull_off unless given")
+    results.add_argument("--at", choices=events, help="event of --render and --stress; pull_off unless given")
     movie = "draw it up to the wall, onto it and off again: gif"
     results.add_argument("--movie", type=Path, help=movie, metavar="FILE")
     results.add_argument("--force", action="store_true", default=None, help="replace files in a DIR that is not empty")
@@ -76,11 +78,16 @@ def run(options: argparse.Namespace) -> int:
         from fem_adhesion.common.style import require_suffix
 
         require_suffix(options.plot)
-    names = ("json", "csv", "plot", "render", "movie")
-    require_distinct(*(getattr(options, name) for name in (*names, "vtk")))
+    if options.stress:
+        from fem_adhesion.curve.stress import places_of
+
+        options.stress[0] = places_of(options.stress[0], question.units)
+    outputs = {name: getattr(options, name) for name in ("json", "csv", "plot", "render", "movie")}
+    outputs["stress"] = Path(options.stress[1]) if options.stress else None
+    require_distinct(*outputs.values(), options.vtk)
     with ExitStack() as stack:
         fields = options.vtk and stack.enter_context(directory_written_aside(options.vtk, force=bool(options.force)))
-        files = stack.enter_context(all_written(**{name: getattr(options, name) for name in names}))
+        files = stack.enter_context(all_written(**outputs))
         with progress_bar() as step:
             curves = solve(question, step)
             collapsed = beside.solve(curves, laws, step) if laws else None
@@ -91,7 +98,7 @@ def run(options: argparse.Namespace) -> int:
 
             states = states_along(question.scene, curves.path, points=_points(options))
             write_states(states, fields, options.vtk, units=question.units, revolve=options.revolve)
-    console = console_beside(options.json, options.csv)
+    console = console_beside(options.json, options.csv, outputs["stress"])
     terminal.show(curves, console)
     if collapsed:
         console.print(Prose(collapsed.told))
@@ -120,6 +127,11 @@ def _write(
         style.write(
             lambda: beside.draw(collapsed) if collapsed else figure.draw(curves), files["plot"], form, figure.LOOK
         )
+    if "stress" in files:
+        from fem_adhesion.curve import stress
+
+        found = stress.stresses(curves, options.at or "pull_off", options.stress[0])
+        stress.write(found, curves.question.units, files["stress"])
     if "render" in files or "movie" in files:
         from fem_adhesion.curve import pictures
 
@@ -139,7 +151,7 @@ def _question(options: argparse.Namespace) -> Question:
 
     contact = contact_of(options)
     scene = scene_of(options, contact.units.tabor if contact else options.tabor, contact)
-    inside = options.vtk or options.render or options.movie
+    inside = options.vtk or options.render or options.movie or options.stress
     plain = scene.body.name == "half-space" and not inside
     solver: SolverName = options.solver or ("half-space" if plain else "fem")
     _require_heeded(options, scene, solver, contact)
@@ -148,8 +160,8 @@ def _question(options: argparse.Namespace) -> Question:
     for path, suffix in ((options.render, ".png"), (options.movie, ".gif")):
         if path and path.suffix != suffix:
             raise InputError(f"{path} ends in {path.suffix!r}, limit: {suffix}; rename it")
-    if options.at and not options.render:
-        raise InputError(f"at = {options.at} without a picture, limit: with --render; give --render FILE.png too")
+    if options.at and not (options.render or options.stress):
+        raise InputError(f"at = {options.at} without --render or --stress, limit: with one; give --render FILE.png too")
     if options.render or options.movie:
         from fem_adhesion.paraview.picture import require_drawing
 
@@ -168,9 +180,9 @@ def _require_inside(options: argparse.Namespace, scene: Scene, solver: SolverNam
     from fem_adhesion.fields import require_fields
 
     if solver == "half-space":
+        what = next(name for name in ("vtk", "stress", "render", "movie") if getattr(options, name))
         raise InputError(
-            f"{'vtk' if options.vtk else 'picture'} with solver = half-space, which has no fields inside, limit: fem "
-            "or both; take --solver fem"
+            f"{what} with solver = half-space, which has no fields inside, limit: fem or both; take --solver fem"
         )
     require_fields(scene)
     if options.vtk:

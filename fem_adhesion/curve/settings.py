@@ -13,6 +13,13 @@ class Settings:
     inside: int = 20  # points of a curve for ParaView
     own: float = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
 
+    # Stress as numbers
+    along: int = 101  # points of a line, closer near the pole
+    deep: float = 3.0  # contact radii, or beta without contact, to which a line goes
+    larger: float = 1.6  # times the box of a cell's vertices, in which points may be its own: sides are curved
+    steps: int = 10  # of Newton's method to a place in a cell
+    outside: float = 1e-6  # of a cell's side, by which a place on the side may be off
+
     # The page
     page: tuple[float, float] = (7.3, 10.0)  # inches
     samples: int = 600  # points of a theory's line

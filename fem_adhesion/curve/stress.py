@@ -1,0 +1,166 @@
+"""The stress inside a body as numbers: along its axis, along its contact surface, or at points of a file.
+
+The error at a point is the largest change of a component from elements of one degree less: each passes through zero
+somewhere, all hardly at once.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from fem_adhesion.common.numbers import parse
+from fem_adhesion.common.record import column
+from fem_adhesion.curve.settings import USUAL
+from fem_adhesion.curve.solve import Curves
+from fem_adhesion.elasticity.reference import reference_functions
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.fields import FIELDS, State, state_at
+from halfspace.equilibrium.contact import CONTACT_RADIUS
+from halfspace.errors import InputError
+from halfspace.scaling import Units
+from halfspace.values import Array, Index, Valued
+
+COMPONENTS = ("rr", "zz", "hoop", "rz")
+LINES = ("axis", "surface")  # where points are taken without a file
+PAPER: Mapping[str, tuple[float, str]] = {
+    "r": (1.0, "beta"),
+    "depth": (1.0, "beta"),
+    "stress": (1.0, "dgamma per mu eps"),
+}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Stresses(Valued):
+    """Stress at points of a body at an event, tension positive.
+
+    Radii and depths (n,) are in beta, the components (4, n) and the errors of all, (n,), in E* beta/R.
+    """
+
+    radii: Array
+    depths: Array
+    components: Array
+    errors: Array
+
+
+Points = tuple[Array, Array]
+"""Radii and depths in beta, (n,) each."""
+
+
+def stresses(curves: Curves, event: str, where: str | Points) -> Stresses:
+    """Solve for the stress at an event of the first curve, along one of `LINES` or at points.
+
+    InputError if the curve does not have the event, or a point lies outside what is meshed of the body.
+    """
+    located, scene = curves.path.stages[-1].get(event), curves.question.scene
+    if located is None:
+        raise InputError(f"at = {event}, which the curve of tabor {scene.tabor:g} does not have; take pull_off")
+    coarse, fine = (
+        state_at(scene, located.problem, located.point, how=replace(FIELDS, degree=FIELDS.degree - k)) for k in (1, 0)
+    )
+    radii, depths = _along(fine, where) if isinstance(where, str) else where
+    values, others = (stress_at(state, radii, depths) for state in (fine, coarse))
+    return Stresses(radii, depths, values, np.abs(values - others).max(axis=0))
+
+
+def stress_at(state: State, radii: Array, depths: Array) -> Array:
+    """Stress (4, n) in E* beta/R at points (n,) of a body, by radius and depth under z = 0 in beta."""
+    space = state.space
+    cells, places = located_in(space, np.array([radii, -depths]))
+    own = state.stress[:, space.scalar_dofs.element_dofs[:, cells]]
+    return np.asarray(np.einsum("kin,in->kn", own, reference_functions(space.element, places)[0]))
+
+
+def located_in(space: Space, points: Array) -> tuple[Index, Array]:
+    """Cells (n,) with points (2, n), and the points' places (2, n) in the reference cell; InputError if one is outside.
+
+    Newton's method is tried in every cell whose box has the point, a box somewhat larger than the cell's vertices
+    have, as sides are curved; the cell is the one that the point is deepest in.
+    """
+    vertices = space.mesh.p[:, space.mesh.t]  # (2, corners, cells)
+    low, high = vertices.min(axis=1), vertices.max(axis=1)
+    middle, half = (low + high) / 2, USUAL.larger * (high - low) / 2
+    which, cells = np.nonzero((np.abs(points[:, :, None] - middle[:, None]) <= half[:, None]).all(axis=0))
+    places = _places(space.mesh.mapping(), points[:, which], cells)
+    beyond = places.sum(axis=0) if len(space.mesh.t) == 3 else places.max(axis=0)  # of triangles, of quadrilaterals
+    depth = np.nan_to_num(np.minimum(places.min(axis=0), 1 - beyond), nan=-np.inf)
+    deepest = np.full(points.shape[1], -np.inf)
+    np.maximum.at(deepest, which, depth)
+    if np.any(outside := deepest < -USUAL.outside):
+        r, z = points[:, outside][:, 0]
+        raise InputError(f"the point at r = {r:.4g}, depth {-z:.4g} beta is outside the mesh of the body; leave it out")
+    chosen = np.unique(which[depth == deepest[which]], return_index=True)[1]
+    one = np.flatnonzero(depth == deepest[which])[chosen]
+    return cells[one], places[:, one]
+
+
+def _places(mapping: Any, points: Array, cells: Index) -> Array:
+    """Places (2, n) in the reference cell of points (2, n) that the map of a cell each takes there, from its middle."""
+    X = np.full(points.shape, 1 / 3)
+    for _ in range(USUAL.steps):
+        off = points - mapping.F(X[:, :, None], cells)[:, :, 0]
+        by_place = mapping.DF(X[:, :, None], cells)[..., 0].transpose(2, 0, 1)
+        X = np.clip(X + np.linalg.solve(by_place, off.T[:, :, None])[..., 0].T, -0.5, 1.5)
+    return X
+
+
+def _along(state: State, line: str) -> Points:
+    """Points of a line, closer near the pole."""
+    size = float(np.nan_to_num(state.observables[CONTACT_RADIUS])) or 1.0
+    along = USUAL.deep * size * np.linspace(0, 1, USUAL.along) ** 2
+    if line == "axis":
+        return np.zeros(along.size), along[along < -state.space.mesh.p[1].min()]
+    radii = along[(along > state.surface.radii[0]) & (along < state.surface.radii[-1])]
+    return radii, np.interp(radii, state.surface.radii, state.surface.depths)
+
+
+def places_of(where: str, units: Units | None) -> str | Points:
+    """One of `LINES`, or the points of a table with the columns r and depth, their unit after the name: r_nm, depth_nm.
+
+    InputError if it cannot be read, or has no such columns.
+    """
+    if where in LINES:
+        return where
+    path = Path(where)
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            rows = list(csv.DictReader(file))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"stress = {path} cannot be read, limit: axis, surface or a CSV file; give one") from error
+    found = []
+    for quantity in ("r", "depth"):
+        name = next((name for name in (rows[0] if rows else ()) if name and name.startswith(f"{quantity}_")), None)
+        if name is None:
+            raise InputError(f"{path} has no column {quantity} with rows; write the header as r_nm,depth_nm or in beta")
+        unit = name.partition("_")[2]
+        if unit != "beta" and units is None:
+            raise InputError(f"{path}: {name} with --tabor, limit: beta; write {quantity}_beta, or give the material")
+        size = 1.0 if units is None or unit == "beta" else parse(f"1{unit}", quantity) / units.length
+        try:
+            found.append(size * np.array([float(row[name]) for row in rows]))
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{path}: {name} has a row that is no number; mend it or leave it out") from error
+    radii, depths = found
+    return radii, depths
+
+
+def write(found: Stresses, units: Units | None, file: TextIO) -> None:
+    """Write a table of points, components and errors, in the units of the paper and, if the material is known, SI."""
+    tables = [PAPER]
+    if units:
+        tables.append({"r": units.si("radius"), "depth": units.si("radius"), "stress": units.si("pressure")})
+    columns: dict[str, Array] = {}
+    for table in tables:
+        for name, values in (("r", found.radii), ("depth", found.depths)):
+            columns[column(name, table[name][1])] = values * table[name][0]
+        size, unit = table["stress"]
+        for name, values in zip((*COMPONENTS, "error"), (*found.components, found.errors), strict=True):
+            columns[column(f"stress_{name}", unit)] = values * size
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(np.column_stack(list(columns.values())).tolist())
