@@ -16,6 +16,20 @@ from halfspace.errors import InputError
 from halfspace.limits import require_positive
 from halfspace.values import Array
 
+__all__ = [
+    "ATTARD_PARKER",
+    "HAMAKER",
+    "IN_SI",
+    "MAUGIS",
+    "MYD",
+    "MYD_AMPLIFICATION",
+    "Parameter",
+    "Units",
+    "contact_modulus",
+    "equivalent_radius",
+    "spacing_of",
+]
+
 HAMAKER = 16 * math.pi  # A/(dgamma eps^2) of the 3-9 law
 
 
@@ -187,3 +201,7 @@ MYD_AMPLIFICATION = Parameter(math.cbrt(6 * math.pi**2))  # mu_T = 3.898 mu, Mul
 MYD = Parameter(32 / (3 * math.pi) * math.cbrt(2 / math.pi))  # mu_D = 2.9208 mu, the same (1980), Pashley (1984)
 MAUGIS = Parameter(16 / (9 * math.sqrt(3)) * math.cbrt(9 / (2 * math.pi)))  # lambda = 1.1570 mu at the same tension
 ATTARD_PARKER = Parameter(0.5, 1.5)  # sigma_AP = mu^(3/2)/2
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -7,7 +7,7 @@ import re
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -69,7 +69,7 @@ def ended(how: KeyboardInterrupt, what: str) -> int:
 
 
 class Parser(argparse.ArgumentParser):
-    """Refuses bad arguments in one line, and shows defaults."""
+    """Refuses bad arguments in one line, with the nearest of those that it has, and shows defaults."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**{"formatter_class": Help, **settings})
@@ -82,9 +82,27 @@ class Parser(argparse.ArgumentParser):
 
         return f"fem-adhesion {version('fem-adhesion')}"
 
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> tuple[Any, list[str]]:
+        """Refuse what it does not know where it is met: a command knows its own options, the program does not."""
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            near = _nearest(unknown[0].partition("=")[0], self._option_string_actions)
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+        return found, []
+
     def error(self, message: str) -> NoReturn:
         """Exit with code 2."""
-        self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
+        choice = re.search(r"invalid choice: '(.*)' \(choose from (.*)\)", message)
+        near = _nearest(choice[1], re.findall(r"[\w-]+", choice[2])) if choice else ""
+        self.exit(BAD_INPUT, f"{self.prog}: {message}{near}; see {self.prog} --help\n")
+
+
+def _nearest(word: str, known: Iterable[str]) -> str:
+    """Question after the nearest of the words that are known, if one is near."""
+    from difflib import get_close_matches  # here, as it takes a third of what the program's help does
+
+    near = get_close_matches(word, known, n=1)
+    return f" (did you mean {near[0]}?)" if near else ""
 
 
 @dataclass(frozen=True)

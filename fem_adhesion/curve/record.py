@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import IO, Any
 
 from fem_adhesion.common import record as common
@@ -12,17 +12,12 @@ from fem_adhesion.common.facts import plain
 from fem_adhesion.common.record import UNITS, column
 from fem_adhesion.curve.solve import Curves
 from halfspace.equilibrium.contact import OBSERVABLES
-from halfspace.equilibrium.devices import Cycle
-from halfspace.equilibrium.events import Event
+from halfspace.equilibrium.devices import ENDS, Cycle
+from halfspace.equilibrium.events import points_of
 from halfspace.scaling import IN_SI
 
-ERRORS = tuple(f"{name}_error" for name in OBSERVABLES)
-COLUMNS = ("arclength", *OBSERVABLES, *ERRORS)
+FLAGS = ("stable_under_fixed_grips", "stable_under_dead_load")
 SPREAD = "_model_uncertainty"  # after an observable's name: how far apart models lie between which there is a choice
-NUMBERS = tuple(key for name in OBSERVABLES for key in (name, f"{name}_error"))  # of an event
-FLAGS = {"stable_under_fixed_grips": "stable", "stable_under_dead_load": "stable_under_dead_load"}
-MORE = {"jumps": "jumps", "margin": "margin", "model_uncertainty": "spread", "energy_released": "energy"}
-"""Keys of what the solvers tell and the weak form does not, and their attributes."""
 
 
 def head(curves: Curves) -> dict[str, Any]:
@@ -40,25 +35,9 @@ def head(curves: Curves) -> dict[str, Any]:
 
 def record(curves: Curves) -> dict[str, Any]:
     """Everything, ready for JSON: no NaN, and None for the contact radius without contact."""
-    solutions = {name: _solution(path) | {"left_out": curves.left_out(name)} for name, path in curves.sampled.items()}
+    solutions = {name: path.to_dict() | {"left_out": curves.left_out(name)} for name, path in curves.sampled.items()}
     cycles = {"fixed_grips": _cycle(curves.grips), "apparatus": _cycle(curves.apparatus)}
     return head(curves) | {"solutions": plain(solutions), "jumps": plain(cycles)}
-
-
-def _solution(path: Any) -> dict[str, Any]:
-    found = {
-        "events": {name: _event(event, path.tolerance.missed_by(event)) for name, event in path.events.items()},
-        "curve": {name: getattr(path, name) for name in COLUMNS}
-        | {name: getattr(path, flag) for name, flag in FLAGS.items()},
-        **{name: getattr(path, name) for name in ("met", "unknowns", "seconds", "settings")},
-        **{key: getattr(path, name) for key, name in MORE.items() if hasattr(path, name)},
-    }
-    return found | {"unconfirmed_folds": [fold._asdict() for fold in getattr(path, "unconfirmed", ())]}
-
-
-def _event(event: Event, missed: Sequence[str]) -> dict[str, Any]:
-    """Numbers of an event with their errors, and which of them miss the tolerance."""
-    return {key: getattr(event, key) for key in NUMBERS} | {"missed": missed}
 
 
 def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
@@ -66,8 +45,7 @@ def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
         return None
     ends = {
         name: {
-            "take_off": _event(jump.take_off, cycle.missed_by(name, "take_off")),
-            "landing": _event(jump.landing, cycle.missed_by(name, "landing")),
+            **{end: {**getattr(jump, end).numbers, "missed": cycle.missed_by(name, end)} for end in ENDS},
             "energy": jump.energy,
         }
         for name, jump in cycle.jumps.items()
@@ -86,7 +64,7 @@ def write_csv(curves: Curves, file: IO[str]) -> None:
     spread = [
         f"{name}{SPREAD}" for name in OBSERVABLES if any(getattr(path, "spread", {}) for path in curves.paths.values())
     ]
-    for quantity in (*OBSERVABLES, *ERRORS, *spread):
+    for quantity in (*OBSERVABLES, *(f"{name}_error" for name in OBSERVABLES), *spread):
         name = quantity.removesuffix("_error").removesuffix(SPREAD)
         size, unit = units.si(name) if units else (1.0, UNITS[name])
         factors |= {column(quantity, UNITS[name]): (quantity, 1.0), column(quantity, unit): (quantity, size)}
@@ -105,12 +83,13 @@ def write_csv(curves: Curves, file: IO[str]) -> None:
 
 def _rows(path: Any) -> Iterator[dict[str, Any]]:
     """Points, then events, with their quantities by name."""
-    flags = [getattr(path, flag).astype(int).tolist() for flag in FLAGS.values()]
-    for values in zip(*(getattr(path, name).tolist() for name in COLUMNS), *flags, strict=True):
-        yield {"event": "", **dict(zip((*COLUMNS, *FLAGS), values, strict=True))}
+    points = {name: values.tolist() for name, values in points_of(path).items()}
+    for values in zip(*points.values(), strict=True):
+        point = dict(zip(points, values, strict=True))
+        yield {"event": "", **point, **{flag: int(point[flag]) for flag in FLAGS}}
     places, spread = path.stages[-1] if hasattr(path, "stages") else {}, getattr(path, "spread", {})
     for name, event in path.events.items():
-        row = {"event": name} | {key: getattr(event, key) for key in NUMBERS}
+        row: dict[str, Any] = {"event": name, **event.numbers}
         row |= {f"{of}{SPREAD}": apart for of, apart in spread.get(name, {}).items()}
         row |= {"arclength": places[name].point.arclength} if name in places else {}
         yield row | {"missed_rtol": " ".join(path.tolerance.missed_by(event))}

@@ -19,7 +19,7 @@ from fem_adhesion.weak_form.body import Array, box, discretise, growing
 from fem_adhesion.weak_form.contact import Contact
 from fem_adhesion.weak_form.newton import Equilibrium, along, at_approach, at_load, even, newton, on_axis
 from fem_adhesion.weak_form.settings import USUAL, Settings
-from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
+from halfspace.equilibrium.events import Event, Tolerance, points_of, tolerance_told
 from halfspace.errors import InputError, NotConverged, Unsolved, tried
 from halfspace.laws import LENNARD_JONES
 from halfspace.limits import require_between
@@ -251,6 +251,14 @@ class Curve(States):
     def met(self) -> bool:
         """Whether all events have their loads and approaches to the accuracy asked for."""
         return not self.missed
+
+    def to_dict(self) -> dict[str, Any]:
+        """All numbers as plain data, as of `halfspace.EquilibriumPath.to_dict`; energy and margin are not known."""
+        return {
+            "events": self.tolerance.told(self.events),
+            "curve": points_of(self),
+            **{name: getattr(self, name) for name in ("met", "unknowns", "seconds", "settings")},
+        }
 
 
 def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settings = USUAL) -> Curve:

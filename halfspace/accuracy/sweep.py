@@ -101,7 +101,7 @@ def sweep(
     law: Law = LENNARD_JONES,
     profile: Profile = PARABOLOID,
     body: LayeredBody | None = None,
-    rtol: float = 1e-6,
+    rtol: float = 1e-5,
     to_load: float = COMPRESSION,
     map: Map = map,  # noqa: A002 (the very same, unless another is given)
 ) -> Sweep:

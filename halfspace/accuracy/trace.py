@@ -32,7 +32,7 @@ def trace(
     profile: Profile = PARABOLOID,
     body: LayeredBody | None = None,
     kernel: str = "panels",
-    rtol: float = 1e-6,
+    rtol: float = 1e-5,
     to_load: float = COMPRESSION,
 ) -> EquilibriumPath:
     """Trace the load-approach curve of a rigid body on an adhesive half-space, or a layer, and solve for its events.

@@ -21,3 +21,7 @@ from halfspace.atlas.events import (
 
 __all__ = ["Curve", "Energy", "Jump", "birth_of_folds", "curve", "energy_lost", "energy_released"]
 __all__ += ["jump_off", "jump_on", "pull_off", "sphere", "table", "zero_load"]
+
+
+def __dir__() -> list[str]:
+    return __all__

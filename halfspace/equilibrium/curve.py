@@ -22,6 +22,7 @@ from halfspace.equilibrium.events import (
     approach_scale,
     is_event,
     is_fold,
+    points_of,
     tolerance_told,
     usual,
 )
@@ -287,6 +288,31 @@ class EquilibriumPath(Valued):
         """Stability under a dead load: stable under fixed grips and dW/dalpha positive, shape (points,)."""
         rates = np.array([point.rates for point in self.points])
         return np.asarray(self.stable & (rates[:, LOAD] * rates[:, APPROACH] > 0))
+
+    def to_dict(self) -> dict[str, Any]:
+        """All numbers as plain data: events, points, energy, and what they rest on.
+
+        ``events`` are by name, each a mapping of its numbers and their errors, ``approach`` ... and
+        ``approach_error`` ..., and which of them are ``missed``; ``curve`` has the arrays of the points by name, with
+        ``stable_under_fixed_grips`` and ``stable_under_dead_load``; ``energy_released``, ``margin`` and ``jumps`` are
+        as the attributes.
+        """
+        return {
+            "events": self.tolerance.told(self.events),
+            "curve": points_of(self),
+            **{name: getattr(self, name) for name in ("met", "unknowns", "seconds", "settings", "jumps", "margin")},
+            "model_uncertainty": self.spread,
+            "energy_released": self.energy,
+            "unconfirmed_folds": [fold._asdict() for fold in self.unconfirmed],
+        }
+
+    def to_frame(self) -> Any:
+        """Points as a `pandas.DataFrame` with the columns of ``curve`` in `to_dict`; InputError without pandas."""
+        try:
+            from pandas import DataFrame  # here, because few have it
+        except ModuleNotFoundError as error:
+            raise InputError("a frame needs pandas; pip install 'fem-adhesion[frames]', or take to_dict") from error
+        return DataFrame(points_of(self))
 
     def _observable(self, index: int) -> Array:
         return np.array([point.observables[index] for point in self.points])

@@ -6,13 +6,13 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.conditions import ROUND_OFF, Located
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, OBSERVABLES
 from halfspace.values import Array, Estimate
 
 T = TypeVar("T")
@@ -56,6 +56,11 @@ class Event:
     def estimate(self, quantity: str) -> Estimate:
         """One of its numbers with its error: approach, load, central_gap or contact_radius."""
         return Estimate(getattr(self, quantity), getattr(self, f"{quantity}_error"))
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Its numbers with their errors, by name."""
+        return {key: getattr(self, key) for name in OBSERVABLES for key in (name, f"{name}_error")}
 
 
 class Unconfirmed(NamedTuple):
@@ -126,9 +131,20 @@ class Tolerance:
         sizes = {"approach": self.approach, "load": size}
         return tuple(name for name, size in sizes.items() if not getattr(event, f"{name}_error") <= self.rtol * size)
 
+    def told(self, events: Mapping[str, Event]) -> dict[str, dict[str, Any]]:
+        """By event, its numbers and which of them miss it, as plain data."""
+        return {name: {**event.numbers, "missed": self.missed_by(event)} for name, event in events.items()}
+
     def missed(self, events: Mapping[str, Event]) -> dict[str, tuple[str, ...]]:
         """By event, the numbers that miss it; empty if it is met."""
         return {name: numbers for name, event in events.items() if (numbers := self.missed_by(event))}
+
+
+def points_of(path: Any) -> dict[str, Array]:
+    """Arrays of the points of a load-approach curve by name, with their errors and stability."""
+    names = ("arclength", *OBSERVABLES, *(f"{name}_error" for name in OBSERVABLES))
+    stable = {"stable_under_fixed_grips": path.stable, "stable_under_dead_load": path.stable_under_dead_load}
+    return {name: getattr(path, name) for name in names} | stable
 
 
 def tolerance_told(rtol: float, missed: Mapping[str, Sequence[str]]) -> str:

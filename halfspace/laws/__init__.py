@@ -9,3 +9,7 @@ from halfspace.laws.law import Law
 from halfspace.laws.tabulated import Tabulated
 
 __all__ = ["LENNARD_JONES", "Dlvo", "Dugdale", "Exponential", "Law", "LennardJones", "Morse", "PowerLaw", "Tabulated"]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -21,3 +21,7 @@ __all__ = [
     "Tabulated",
     "require_profile",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -203,6 +203,23 @@ def test_assess_refuses_in_one_line_before_any_work(arguments, message, monkeypa
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["curve", "--radius", "-100nm", *MATERIAL[2:], "--spacing", "1nm"], "radius = -100nm is outside 0 < radius"),
+        (
+            ["curve", "--adhesion", "1J/m^2"],
+            "curve: unrecognized arguments: --adhesion 1J/m^2 (did you mean --work-of-",
+        ),
+        (["curve", "--tabor", "1", "--solver", "fe"], "(did you mean fem?)"),
+        (["compar"], "(did you mean compare?)"),
+    ],
+)
+def test_what_is_not_known_is_answered_with_the_nearest(arguments, message, capsys):
+    assert ended(arguments) == 2
+    assert message in capsys.readouterr().err
+
+
 def test_every_option_of_a_contact_is_heeded(monkeypatch):
     """Every number distinct, read back from the contact that is assessed."""
     asked = []

@@ -109,6 +109,16 @@ def test_an_event_is_asked_for_by_its_name(path):
         path.event("xyz")
 
 
+def test_all_numbers_are_to_be_had_as_plain_data(path):
+    plain, frame = path.to_dict(), path.to_frame()
+    assert plain["events"].keys() == path.events.keys()
+    assert plain["events"]["pull_off"]["load_error"] == path.events["pull_off"].load_error
+    assert list(frame) == list(plain["curve"])
+    for name in ("load", "contact_radius_error"):
+        np.testing.assert_array_equal(frame[name], getattr(path, name))
+    assert np.array_equal(frame["stable_under_fixed_grips"], path.stable)
+
+
 # --- how values are compared ---
 
 
@@ -163,6 +173,13 @@ def test_other_parts_make_other_values(one, other):
 
 
 # --- what the packages show ---
+
+
+@pytest.mark.parametrize("room", ["laws", "profiles", "scaling", "theories", "atlas"])
+def test_a_room_shows_what_is_public_and_nothing_else(room):
+    module = getattr(halfspace, room)
+    assert sorted(dir(module)) == sorted(module.__all__)
+    assert all(getattr(module, name) is not None for name in dir(module))
 
 
 @pytest.mark.parametrize("package", [halfspace, fem_adhesion])
