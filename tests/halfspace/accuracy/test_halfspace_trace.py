@@ -162,7 +162,7 @@ def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, po
     made = []
     factorise = ContactProblem.bordered_solver
     monkeypatch.setattr(ContactProblem, "bordered_solver", lambda *args: made.append(1) or factorise(*args))
-    path = halfspace.trace(tabor, law=law)
+    path = halfspace.trace(tabor, law=law, rtol=1e-6)
     assert path.count <= points
     assert len(made) <= factorisations
 
