@@ -51,6 +51,7 @@ def traced(scene, rtol):
         (Scene(1.0, STIFF), 1e-4),
         (Scene(1.0, Coated(0.01, 10.0, poisson=0.3)), 1e-4),  # bends over a tenth of a half-space's spike
         (Scene(1.0, Coated(0.05, 0.01, 0.0, poisson=0.499)), 1e-5),
+        (Scene(1.0, STACK), 1e-3),
         (Scene(0.562, Layer(3.76, "sliding", poisson=0.47), Hyperboloid(1.79), law=Dlvo(-0.03, 4.73)), 1e-4),  # to 1e9
         (Scene(1.0, Layers([Stratum(0.2, 0.3), Stratum(0.2, 0.4999, 0.02)], "sliding")), 1e-3),  # complex images
         # The attraction reaches to 4e9 beta: cells as long, 0.0855 deep, made the stiffness singular.
