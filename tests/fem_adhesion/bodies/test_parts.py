@@ -63,7 +63,7 @@ def test_a_toy_body_is_known_to_the_command_line(tmp_path):
     scene = json.loads(record.read_text())["scene"]
     assert part_from("body", scene["body"]) == Drum(radius_ratio=10.0, grip="bonded")
     mesh = meshio.read(sorted(states.glob("body*.vtu"))[0])
-    assert np.abs(mesh.points).max() == pytest.approx(np.sqrt(10.0), rel=1e-9)
+    assert np.abs(mesh.points).max() == pytest.approx(np.sqrt(10.0 / 0.3), rel=1e-9)
 
 
 def test_a_part_and_its_name_are_translated_both_ways():
