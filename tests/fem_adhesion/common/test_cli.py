@@ -162,7 +162,8 @@ def test_a_contact_has_the_same_options_in_every_command(capsys):
     contact = {"--radius", "--modulus", "--poisson", "--work-of-adhesion", "--spacing", "--hamaker"}
     contact |= {"--counter-modulus", "--counter-poisson", "--counter-radius", "--stiffness"}
     assert contact <= set(curve)
-    assert set(assess) == contact | {"--law", "--help", "--json", "--plot", "--grip", "--thickness", "--foundation"}
+    own = {"--law", "--help", "--digits", "--json", "--plot", "--grip", "--thickness", "--foundation"}
+    assert set(assess) == contact | own
 
 
 @pytest.mark.parametrize("module", ["fem_adhesion", "fem_adhesion.cli"])
