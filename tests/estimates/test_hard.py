@@ -42,7 +42,7 @@ def test_the_command_tells_how_every_case_ended(command, record):
     assert (command.code, command.err.strip()) == (0, "")
     outcomes = [row["outcome"] for row in record["cases"]]
     assert len(outcomes) == len(CASES)
-    assert f"{len(CASES)} hard cases" in (Path(__file__).parents[2] / "README.md").read_text()
+    assert f"{len(CASES)} hard cases" in (Path(__file__).parents[2] / "CONTRIBUTING.md").read_text()
     told = f"{outcomes.count('converged')} converged, {outcomes.count('refused')} refused, 0 wrong"
     assert record["summary"] == told
     assert told in command.out
