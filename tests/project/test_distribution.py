@@ -1,5 +1,7 @@
 """Wheel and sdist have all that is in the repository, and every command runs from the wheel alone."""
 
+import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -32,6 +34,25 @@ def built(tmp_path_factory):
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", BUILD], cwd=place, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return place / "dist"
+
+
+def described(place):
+    """The description of the project that a package index shows."""
+    (place / "metadata").mkdir()
+    code = "from setuptools import build_meta as b; b.prepare_metadata_for_build_wheel('metadata')"
+    subprocess.run([sys.executable, "-W", "ignore", "-c", code], cwd=place, capture_output=True, check=True)
+    (file,) = (place / "metadata").rglob("METADATA")
+    return file.read_text()
+
+
+def test_links_lead_to_the_files_or_are_none_on_a_package_index(built, tmp_path):
+    shutil.copytree(built.parent, tmp_path, dirs_exist_ok=True)
+    assert re.findall(r"\]\((?!https?:|#)", described(tmp_path)) == []
+    assert "](docs" in (tmp_path / "README.md").read_text()
+    with (tmp_path / "pyproject.toml").open("a") as file:
+        file.write('[project.urls]\nSource = "https://example.org/name/raw/main"\n')
+    shutil.rmtree(tmp_path / "metadata")
+    assert "](https://example.org/name/raw/main/docs/pictures/curve.png)" in described(tmp_path)
 
 
 def test_the_sdist_has_all_but_dotfiles(built):
