@@ -9,8 +9,8 @@ import pytest
 import halfspace
 from fem_adhesion import cli
 from fem_adhesion.assess import study
-from fem_adhesion.assess.predictions import QUANTITIES, computed, on_atlas
-from fem_adhesion.assess.spread import Spread
+from fem_adhesion.assess.predictions import QUANTITIES, Quantity, computed, on_atlas
+from fem_adhesion.assess.spread import Spread, spreads
 from fem_adhesion.assess.terminal import spread_told
 from fem_adhesion.common.contact import Contact, Inputs
 from fem_adhesion.common.numbers import Measured, measured
@@ -128,6 +128,20 @@ def test_near_the_birth_of_folds_quantiles_stand_for_the_first_order():
     quantiles = np.quantile(energies, (0.158655, 0.5, 0.841345))
     assert past["energy_lost"].quantiles == pytest.approx(quantiles, rel=0.1)
     assert "% of draws have it" in spread_told(past["energy_lost"])
+
+
+def test_what_some_draws_lack_is_not_of_the_first_order():
+    inputs = _at_tabor(2.0, 0.01)
+    given = inputs.quantities["modulus"]
+
+    def numbers(contact):
+        there = contact.modulus < given.value + 2 * given.deviation
+        return {"pull_off_force": Quantity(contact.modulus, 0.0, "N")} if there else {}
+
+    (spread,) = spreads("made up", inputs, numbers, lambda contacts: [*map(numbers, contacts)]).quantities.values()
+    assert spread.deviation == pytest.approx(given.deviation)
+    assert spread.present == pytest.approx(0.977, abs=0.004)
+    assert not spread.linear
 
 
 def test_a_hamaker_constant_keeps_its_value_where_the_adhesion_varies():
