@@ -1,0 +1,29 @@
+"""A tip of silicon nitride on a plate: a real curve, whose slope in contact shows that more yields than the spring."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+import fem_adhesion
+from fem_adhesion.common.numbers import Measured
+from fem_adhesion.fitting import words
+
+DATA = Path(__file__).parents[2] / "data" / "afm"
+SLOPES = (0.43, 0.47)  # in contact over the spring constant, by eye
+
+
+def test_a_real_curve_gives_its_pull_off_and_what_yields_besides_the_spring():
+    free = Measured(0.5, math.inf)
+    found = fem_adhesion.fit(
+        DATA / "sin_plate.ibw", radius=20e-9, modulus=160e9, poisson=0.27, compliance=free, models=()
+    )
+    # So small and stiff a contact is rigid: its pull-off is Bradley's, 2 pi R dgamma.
+    assert found.prepared.pull_off == pytest.approx(12.85e-9, rel=0.01)
+    bradley = found.prepared.pull_off / (2 * math.pi * 20e-9)
+    assert found.values["work_of_adhesion"].value == pytest.approx(bradley, rel=0.01)
+    stiff, soft = ((1 / slope - 1) / found.prepared.curve.stiffness for slope in reversed(SLOPES))
+    assert stiff < found.values["compliance"].value < soft
+    assert 0.3e-9 < found.values["spacing"].low < found.values["spacing"].high < 3e-9
+    assert found.misfit
+    assert any("does not fit" in line for line in words.warnings(found))
