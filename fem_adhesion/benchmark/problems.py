@@ -89,7 +89,9 @@ def named(name: str) -> Problem:
     """Problem of a name, or InputError."""
     found = NAMED.fullmatch(name)
     head, numbers = (found[1], found[2].split("-")[1:]) if found else ("", [])
-    kind = next((kind for kind in ("body", "law") if head in PARTS[kind] and head not in ("meshed", "tabulated")), "")
+    kind = next(
+        (kind for kind in ("body", "law") if head in PARTS[kind] and head not in ("meshed", "tabulated", "layers")), ""
+    )
     if not found or not kind:
         raise InputError(
             f"problem = {name!r}, limit: a body or law, its parameters and tabor; as {', '.join(USUAL[-5:])}"

@@ -94,9 +94,7 @@ class Diagnosis:
             "cause": self.cause,
             "alike": self.whole.causes[1:],
             "remedy": REMEDIES[self.cause],
-            "problems": {
-                name: {"cause": own.causes[0], "alike": own.causes[1:]} for name, own in self.problems.items()
-            },
+            "problems": {name: {"cause": p.causes[0], "alike": p.causes[1:]} for name, p in self.problems.items()},
             "fits": [asdict(fit) for fit in self.whole.fits],
             "rows": [asdict(row) for row in self.rows],
         }
@@ -105,10 +103,8 @@ class Diagnosis:
 def diagnose(submitted: Sequence[Submitted]) -> Diagnosis:
     """Compare a submission with our solutions, and find the cause of what is wrong with it."""
     tables = [[_row(one.problem, number) for number in one.numbers] for one in submitted]
-    fits: list[list[Fit | None]] = [
-        [_fitted(variant, one.problem, rows) for one, rows in zip(submitted, tables, strict=True)]
-        for variant in variants()
-    ]
+    pairs = list(zip(submitted, tables, strict=True))
+    fits = [[_fitted(variant, one.problem, rows) for one, rows in pairs] for variant in variants()]
     alone = {one.problem.name: _named([row[i : i + 1] for row in fits], tables[i]) for i, one in enumerate(submitted)}
     rows = [row for table in tables for row in table]
     return Diagnosis(rows, _named(fits, rows), alone, submitted)
@@ -120,22 +116,19 @@ def _named(fits: Sequence[Sequence[Fit | None]], rows: Sequence[Row]) -> Named:
     found = dict[str, list[Fit]]()
     for variant in fits:
         if own := [fit for fit in variant if fit]:
-            parts = [fit or as_sound for fit, as_sound in zip(variant, sound, strict=True)]
-            known = [part for part in parts if part]
-            evidence, misfit = sum(part.evidence for part in known), max(part.misfit for part in known)
+            parts = [part for fit, as_sound in zip(variant, sound, strict=True) if (part := fit or as_sound)]
             sizes = tuple(size for fit in own for size in fit.parameters)
-            whole = replace(
-                own[0], parameters=sizes, evidence=evidence, misfit=misfit, noise=max(p.noise for p in known)
-            )
+            evidence, misfit, noise = zip(*((part.evidence, part.misfit, part.noise) for part in parts), strict=True)
+            whole = Fit(own[0].cause, own[0].what, sizes, sum(evidence), max(misfit), max(noise))
             found.setdefault(whole.cause, []).append(whole)
     best = [max(ways, key=lambda fit: fit.evidence) for ways in found.values()]
     ranked = [replace(fit, evidence=fit.evidence - math.log(len(found[fit.cause]))) for fit in best]
     ranked.sort(key=lambda fit: -fit.evidence)
     alike = [fit for fit in ranked if fit.misfit <= FITS]
-    noise = next(fit for fit in ranked if fit.cause == "sound")
-    may = noise in alike and all(abs(row.deviation) <= SOUND + row.allowed / row.scale for row in rows)
-    if alike and (noise not in alike or alike[0].evidence - noise.evidence >= (SURE if may else LIKELY)):
-        return Named([fit.cause for fit in alike if alike[0].evidence - fit.evidence < ALIKE and fit != noise], ranked)
+    chance = next(fit for fit in ranked if fit.cause == "sound")
+    may = chance in alike and all(abs(row.deviation) <= SOUND + row.allowed / row.scale for row in rows)
+    if alike and (chance not in alike or alike[0].evidence - chance.evidence >= (SURE if may else LIKELY)):
+        return Named([fit.cause for fit in alike if alike[0].evidence - fit.evidence < ALIKE and fit != chance], ranked)
     return Named(["sound" if may else "cannot-tell"], ranked)
 
 
@@ -169,18 +162,16 @@ def _fitted(variant: Variant, problem: Problem, rows: Sequence[Row]) -> Fit | No
         return None
     if not (variant.predict(problem, variant.ends[0]) and variant.predict(problem, variant.ends[1])):
         return None
-    trials, place = np.linspace(first, last, math.ceil((last - first) / STEP) + 1), first
-    if variant.ends[0] < variant.ends[1]:
-        near = int(np.argmax([_likelihood(*misfits(trial), floor)[0] for trial in trials]))
+
+    def worse(logarithm: float) -> float:
+        return -_likelihood(*misfits(logarithm), floor)[0]
+
+    place = first
+    if first < last:
+        trials = np.linspace(first, last, math.ceil((last - first) / STEP) + 1)
+        near = int(np.argmin([worse(trial) for trial in trials]))
         ends = trials[max(near - 1, 0)], trials[min(near + 1, trials.size - 1)]
-        place = float(
-            minimize_scalar(
-                lambda trial: -_likelihood(*misfits(trial), floor)[0],
-                bounds=ends,
-                method="bounded",
-                options={"xatol": 1e-10},
-            ).x
-        )
+        place = float(minimize_scalar(worse, bounds=ends, method="bounded", options={"xatol": 1e-10}).x)
     (deviations, spread), beside = misfits(place), misfits(place + 1e-6)
     likelihood, misfit, noise = _likelihood(deviations, spread, floor)
     rates = (beside[0] - deviations) / 1e-6 * (last - first)

@@ -11,6 +11,8 @@ import pytest
 
 from fem_adhesion import cli
 from fem_adhesion.benchmark import problems
+from fem_adhesion.common.page import data_rows
+from fem_adhesion.registry import PARTS
 from halfspace import atlas
 
 HEADER = ("problem", "quantity", "value")
@@ -181,3 +183,10 @@ def test_a_filled_template_agrees_with_its_sheets(judged, tmp_path):
     assert all(row["verdict"] == "agrees" for row in found["rows"])
     assert "2.666666667 [(eps/h)^3 - (eps/h)^9]" in sheets["half-space-1"]
     assert "with w = 0.2" in sheets["dugdale-0.2-1"]
+
+
+def test_each_body_and_law_that_has_a_name_has_a_statement(capsys):
+    stated = {row["name"] for row in data_rows("benchmark", "statements.csv")}
+    assert stated == (PARTS["body"].keys() | PARTS["law"].keys()) - {"meshed", "tabulated", "layers"}
+    assert cli.main(["benchmark", "--problems", "sheets", "--names", "layers-0.5-1"]) == 2
+    assert "problem = 'layers-0.5-1', limit: a body or law" in capsys.readouterr().err
