@@ -176,7 +176,8 @@ def told(outcomes: Sequence[Outcome]) -> str:
     """How many curves were fitted, how many with a misfit, and whether they differ by more than their intervals."""
     fitted = [one for one in outcomes if not one.reason]
     misfits = sum(one.misfit for one in fitted)
-    lines = [f"{len(fitted)} of {counted(len(outcomes), 'curve')} fitted, {misfits} with a misfit."]
+    cautions = "; the table (--csv) and the record (--json) have their cautions" if misfits else ""
+    lines = [f"{len(fitted)} of {counted(len(outcomes), 'curve')} fitted, {misfits} with a misfit{cautions}."]
     for each in spreads(outcomes):
         if each.curves > 2 and each.between > 2 * each.within:
             times = f"{each.between / each.within:.2g} times what their own intervals allow"

@@ -14,6 +14,7 @@ NAMES = {"work_of_adhesion": "dgamma", "spacing": "eps", "contact_point": "the c
 NAMES |= {"modulus": "E", "stiffness": "the stiffness", "sensitivity": "the sensitivity"}
 NAMES |= {"compliance": "the compliance in series"}
 CLEAR = 6.0  # difference of the criterion from which one model is clearly preferred: a likelihood ratio of 20
+MISSED = 0.1  # share of the pull-off force by which a fit misses what a curve shows best
 KNOWN = 0.5  # half width of an interval of the logarithm from which a number counts as settled
 FINER = {"noise of a third": (3.0, 1.0), "ten times as many samples at the jumps": (1.0, 10.0)}
 """Other measurements: how much smaller the error of the samples and that of the places of the jumps are."""
@@ -48,6 +49,12 @@ def warnings(fit: Fit) -> Iterator[str]:
         ]
         if held:
             yield f"Held as given: {listed([NAMES[name] for name in held])}; free what is not known for certain."
+    pull_off, data = -float(best.problem.branches(best.apparatus).contact[1].min()), fit.prepared.pull_off
+    if abs(pull_off - data) > max(MISSED * data, 5 * fit.prepared.noise):
+        yield (
+            f"The fitted contact pulls off at {engineering(pull_off, 'N')}, the curve at {engineering(data, 'N')}: "
+            f"its dgamma is not that of the pull-off."
+        )
     others = [one for one in fit.candidates if one.name != ATLAS]
     if others and first.name != ATLAS:
         own = next(one for one in fit.candidates if one.name == ATLAS)

@@ -83,8 +83,10 @@ def test_a_wrong_compliance_is_a_misfit():
     found = _fit(truth, 0.005, sensitivity=1.0)
     assert found.misfit
     assert any("does not fit" in line and "widened" in line for line in words.warnings(found))
+    assert any("pulls off at" in line for line in words.warnings(found))
     freed = _fit(truth, 0.005, sensitivity=1.0, compliance=Measured(0.0, math.inf))
     assert not freed.misfit
+    assert not any("pulls off at" in line for line in words.warnings(freed))
     assert _holds(freed.values["work_of_adhesion"], WORK)
 
 
