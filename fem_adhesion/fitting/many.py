@@ -127,6 +127,7 @@ def draw(found: Sequence[Outcome]) -> Figure:
         left, right = (
             float(np.clip(end, scaled.min() - width, scaled.max() + width)) for end in (min(ends), max(ends))
         )
+        margin = 0.03 * ((right - left) or width)
         axes.set_yticks(np.unique(np.linspace(0, top, 5).round()))
         for rank, i in enumerate(order):
             low, high = (end if end is None else end * 10.0**-exponent for end in values[i][1:])
@@ -135,9 +136,7 @@ def draw(found: Sequence[Outcome]) -> Figure:
             axes.plot(shown, (y, y), color=style.BLUE, linewidth=0.8, label=None if rank else "intervals at 95 %")
             axes.plot(scaled[i], y, ".", color=style.BLUE, markersize=3)
         named = f"{name.replace('_', ' ')}, {PREFIXES[exponent]}{unit}"
-        style.dress(
-            axes, named, "curves", legend=None, xlim=(left - 0.03 * (right - left), right + 0.03 * (right - left))
-        )
+        style.dress(axes, named, "curves", legend=None, xlim=(left - margin, right + margin))
     style.legend_below(figure, panels, 2)
     return figure
 
