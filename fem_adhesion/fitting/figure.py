@@ -19,7 +19,7 @@ def draw(fit: Fit) -> Figure:
     data, problem = best.problem.data, best.problem
     found = problem.branches(best.apparatus)
     model = data.modelled(found)
-    force = data.force - data.baseline @ data.compared(model)[1]
+    force = data.levelled(model)
     residuals = problem.residuals(best.x)
     origin, width = best.apparatus.contact_point, max(abs(found.on - found.off), 1e-3 * float(np.ptp(data.travel)))
     x, unit = scaled(data.travel - origin, "m", AROUND * width)

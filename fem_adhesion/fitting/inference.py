@@ -107,12 +107,16 @@ class Data:
         q, r = np.linalg.qr(self.whitened(self.baseline))
         return q, r, self.whitened(self.force)
 
-    def compared(self, model: Array) -> tuple[Array, Array]:
-        """Whitened residuals of the best baseline beside a model's force, and the coefficients of the baseline."""
-        q, r, force = self._base
+    def compared(self, model: Array) -> Array:
+        """Whitened residuals of the best baseline beside a model's force."""
+        q, _, force = self._base
         rest = force - self.whitened(model)
-        along = q.T @ rest
-        return rest - q @ along, np.asarray(np.linalg.solve(r, along))
+        return np.asarray(rest - q @ (q.T @ rest))
+
+    def levelled(self, model: Array) -> Array:
+        """Force without the baseline that is best beside a model's force."""
+        q, r, force = self._base
+        return self.force - self.baseline @ np.linalg.solve(r, q.T @ (force - self.whitened(model)))
 
     def modelled(self, found: Branches) -> Array:
         """Force of a model at the samples."""
@@ -135,7 +139,7 @@ class Data:
         if not found.jumps:
             return self
         rest, runs, places = (
-            self.force - self.baseline @ self.compared(self.modelled(found))[1],
+            self.levelled(self.modelled(found)),
             list[Run](),
             list(self.places),
         )
@@ -215,7 +219,7 @@ class Problem:
         """Whitened residuals of the samples, then those of the jumps' places and of what was known before."""
         apparatus = self.apparatus(x)
         found = self.branches(apparatus)
-        samples, _ = self.data.compared(self.data.modelled(found))
+        samples = self.data.compared(self.data.modelled(found))
         places = [((found.on if at.jump == "on" else found.off) - at.travel) / at.error for at in self.data.places]
         known = [(getattr(apparatus, name) - given.value) / given.deviation for name, given in self.prior.items()]
         return np.concatenate([samples, places, known])

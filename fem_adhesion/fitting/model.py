@@ -22,6 +22,7 @@ from halfspace.values import Array
 
 COUNT = 801  # places on a curve of the atlas; linear between them, the load is within 1e-3 R dgamma
 BEYOND = 160  # places on each of its two continuations
+EVEN = np.linspace(0.0, 1.0, BEYOND)
 FARTHEST = 1e5  # approach in (1 + tabor) eps to which the attraction is continued
 BULGE = 3 * np.pi**2 / (2.5 * 1.4**3.5)
 """B, by which the jump under fixed grips is at that of [G97]'s fit, (abs(alpha*) + 1)^(7/2) = 3 pi^2 tabor^(3/2)."""
@@ -47,10 +48,11 @@ def by_atlas(tabor: float) -> Array:
         return np.hstack([[1 - y - bulge * y**-2.5, -8 * np.pi / 3 * y**-2], by_jkr(tabor)[:, 2 * BEYOND + 1 :]])
     curve = atlas.table(tabor, COUNT)
     (first, pull), (last, push) = curve[:, 0], curve[:, -1]
-    h = (1 - first) * np.geomspace(FARTHEST * (1 + tabor) / (1 - first), 1, BEYOND)[:-1]
-    slope = np.gradient(curve[1, -3:], curve[0, -3:], edge_order=2)[-1]
+    h = (1 - first) * (FARTHEST * (1 + tabor) / (1 - first)) ** EVEN[:0:-1]
+    (x, y, z), w = curve[0, -3:], curve[1, -3:]
+    slope = (w[2] - w[1]) / (z - y) * (1 + (z - y) / (z - x)) - (w[1] - w[0]) / (y - x) * (z - y) / (z - x)
     a = slope * tabor / 2  # of the Hertz contact that is as stiff, dW/dalpha* = 2 a/mu
-    wider = np.geomspace(a, WIDEST, BEYOND)[1:]
+    wider = a * (WIDEST / a) ** EVEN[1:]
     alpha, load = last + tabor * (wider**2 - a**2), push + 4 / 3 * (wider**3 - a**3)
     return np.hstack([[1 - h, pull * ((1 - first) / h) ** 2], curve, [alpha, load]])
 
@@ -119,7 +121,8 @@ def branches(curve: Array, stiffness: float) -> Branches:
     load = curve[1]
     base = curve[0] + load / stiffness
     falls = np.diff(base) < 0
-    tops, bottoms = np.flatnonzero(falls & ~np.roll(falls, 1)), np.flatnonzero(~falls & np.roll(falls, 1))
+    turns = np.flatnonzero(falls[1:] != falls[:-1]) + 1
+    tops, bottoms = turns[falls[turns]], turns[~falls[turns]]
     if not tops.size:
         whole = np.array([base, load])
         steepest = int(np.argmax(np.diff(load) / np.maximum(np.diff(base), 1e-12)))

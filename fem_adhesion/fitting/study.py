@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from scipy.stats import chi2, norm
 
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.fitting.inference import LEVEL, Best, Data, Place, Problem, Run
-from fem_adhesion.fitting.measured import APPROACH, ForceCurve, read
+from fem_adhesion.fitting.measured import APPROACH, BASE, ForceCurve, read
 from fem_adhesion.fitting.model import SOFTEST, THEORIES, Apparatus, Other
 from fem_adhesion.fitting.prepare import Prepared, prepare
 from halfspace.atlas.series import LEAST
@@ -103,8 +104,6 @@ class Fit:
         All models, the most likely first.
     branches : tuple of Branch
         Residuals by branch.
-    contour : (2, n) array
-        Contour of work of adhesion and spacing at 95 %, in SI.
     """
 
     prepared: Prepared
@@ -112,12 +111,24 @@ class Fit:
     best: Best
     candidates: tuple[Candidate, ...]
     branches: tuple[Branch, ...]
-    contour: Array
 
     @property
     def model(self) -> str:
         """The most likely model."""
         return self.candidates[0].name
+
+    @cached_property
+    def contour(self) -> Array:
+        """Contour (2, n) of work of adhesion and spacing at 95 %, in SI, computed when asked for."""
+        problem, spacing = self.best.problem, self.values["spacing"]
+        middle = problem.coordinate("spacing", spacing.value)
+        low, high = (
+            limit if end is None else middle + WIDER * (problem.coordinate("spacing", end) - middle)
+            for limit, end in zip(_limits(self.best), (spacing.low, spacing.high), strict=True)
+        )
+        names = "work_of_adhesion", "spacing"
+        contour = self.best.contour(names, (min(low, middle), max(high, middle)))
+        return np.array([[problem.value(name, x) for x in row] for name, row in zip(names, contour, strict=True)])
 
     @property
     def misfit(self) -> bool:
@@ -186,8 +197,8 @@ def fit(
     every = {name: best_of(name, prepared, given, other) for name in dict.fromkeys((ATLAS, *models))}
     found = {name: best for name, (best, *_) in every.items()}
     best, *others = every[ATLAS]
-    values, contour = _values(best, others)
-    return Fit(prepared, values, best, _candidates(found), _branches(best), contour)
+    values = _values(best, others)
+    return Fit(prepared, values, best, _candidates(found), _branches(best))
 
 
 def data_of(prepared: Prepared, stiffness: float) -> Data:
@@ -225,6 +236,8 @@ def best_of(name: str, prepared: Prepared, given: Mapping[str, Measured], other:
     nominal = given["stiffness"].value if prepared.curve.deflection_given else None
     data = data_of(prepared, given["stiffness"].value)
     start = {key: each.value for key, each in given.items()}
+    if math.isinf(given["modulus"].deviation):
+        start["modulus"] = _hertz(prepared, start, other)
     work = prepared.pull_off * start["sensitivity"] / (1.75 * math.pi * start["radius"])
     fitted = ("work_of_adhesion", "contact_point", *moved)
     found = list[Best]()
@@ -244,6 +257,17 @@ def best_of(name: str, prepared: Prepared, given: Mapping[str, Measured], other:
     return [problem.settled(np.zeros(len(problem.fitted))), *found]
 
 
+def _hertz(prepared: Prepared, start: Mapping[str, float], other: Other) -> float:
+    """Modulus by Hertz's indentation at the largest force; that of the start if the spring takes all of the travel."""
+    curve = prepared.curve
+    force = float(np.max((curve.force - prepared.background)[curve.approach])) * start["sensitivity"]
+    bent = force / start["stiffness"] if curve.coordinate == BASE else 0.0
+    depth = float(curve.travel.max()) - prepared.contact - bent
+    if depth <= 0:
+        return start["modulus"]
+    return 0.75 * force / math.sqrt(start["radius"] * depth**3) * (1 - other.poisson**2)
+
+
 def _first_contact(problem: Problem, prepared: Prepared) -> float:
     """Contact point at which the model's jumps are where the data's are; without any, as its force says."""
     found = problem.branches(problem.start)
@@ -254,32 +278,26 @@ def _first_contact(problem: Problem, prepared: Prepared) -> float:
     return prepared.contact - float(np.interp(0.0, force[least:], base[least:]))
 
 
-def _values(best: Best, others: Sequence[Best]) -> tuple[dict[str, Value], Array]:
-    """Values with intervals in SI, and the contour of work of adhesion and spacing."""
-    problem, apparatus = best.problem, best.apparatus
-    units = problem.other.units(apparatus)
-    first, last = (problem.coordinate("spacing", units.displacement / float(tabor)) for tabor in TABORS[[-1, 0]])
-    found, ends = dict[str, Value](), dict[str, tuple[float | None, float | None]]()
-    for name in problem.fitted:
-        at = float(best.x[problem.fitted.index(name)])
-        if name == "contact_point":  # a nuisance: its interval is that of the curvature
-            ends[name] = at - EXACT * best.error(name), at + EXACT * best.error(name)
-        else:
-            limits = (first, last) if name == "spacing" else (at - RANGE, at + RANGE)
-            ends[name] = best.interval(name, limits, others if name == "spacing" else ())
-        low, high = (None if end is None else problem.value(name, end) for end in ends[name])
-        found[name] = Value(getattr(apparatus, name), low, high, UNITS[name])
-    middle = problem.coordinate("spacing", apparatus.spacing)
-    low, high = (
-        limit if end is None else middle + WIDER * (end - middle)
-        for limit, end in zip((first, last), ends["spacing"], strict=True)
-    )
-    contour = best.contour(("work_of_adhesion", "spacing"), (min(low, middle), max(high, middle)))
-    works, spacings = (
-        [problem.value(name, x) for x in row]
-        for name, row in zip(("work_of_adhesion", "spacing"), contour, strict=True)
-    )
-    return found, np.array([works, spacings])
+def _values(best: Best, others: Sequence[Best]) -> dict[str, Value]:
+    """Values with intervals in SI."""
+    problem, found = best.problem, dict[str, Value]()
+    for i, name in enumerate(problem.fitted):
+        at, error = float(best.x[i]), EXACT * best.error(name)
+        ends: tuple[float | None, float | None] = (at - error, at + error)
+        if name == "spacing":
+            ends = best.interval(name, _limits(best), others)
+        elif name != "contact_point":  # a nuisance, for which the curvature will do
+            ends = best.interval(name, (at - RANGE, at + RANGE))
+        low, high = (None if end is None else problem.value(name, end) for end in ends)
+        found[name] = Value(getattr(best.apparatus, name), low, high, UNITS[name])
+    return found
+
+
+def _limits(best: Best) -> tuple[float, float]:
+    """Coordinates of the spacings of the softest and the stiffest contact, beyond which no curve changes."""
+    length = best.problem.other.units(best.apparatus).displacement
+    softest, stiffest = (best.problem.coordinate("spacing", length / float(tabor)) for tabor in TABORS[[-1, 0]])
+    return softest, stiffest
 
 
 def _candidates(found: Mapping[str, Best]) -> tuple[Candidate, ...]:
