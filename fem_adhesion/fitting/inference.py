@@ -130,8 +130,10 @@ class Data:
                 force[run.samples] = np.interp(z, *getattr(found, run.branch))
         return force
 
-    def divided(self, found: Branches) -> Data:
+    def divided(self, found: Branches, *, loose: bool = False) -> Data:
         """The same data with runs on both branches divided where a model that jumps would best have it.
+
+        If `loose`, the samples alone decide, and not where the model jumps.
 
         The samples before and after leave the place of a faint jump open: its standard error is that of a step of
         known size in noise, sqrt(26) (noise/step)^2 samples (Yao, Ann. Stat. 15 (1987) 1321), beside the sampling step.
@@ -156,7 +158,8 @@ class Data:
             error = step * math.hypot(math.sqrt(1 / 12), math.sqrt(26) * (noise / size) ** 2)
             gain = ((rest[run.samples] - first) ** 2 - (rest[run.samples] - then) ** 2)[1:] / noise**2
             between = (z[1:] + z[:-1]) / 2
-            i = int(np.argmin(np.cumsum(gain) - gain + ((between - turn) / error) ** 2)) + 1
+            off = ((between - turn) / error) ** 2 * (not loose)
+            i = int(np.argmin(np.cumsum(gain) - gain + off)) + 1
             names = ("contact", "separated") if run.segment else ("separated", "contact")
             start, stop = run.samples.start, run.samples.stop
             parts = slice(start, start + i), slice(start + i, stop)
@@ -247,11 +250,14 @@ class Problem:
         there[free] = found.x
         return Best(self, self, there, 2 * float(found.cost), np.asarray(found.jac))
 
-    def settled(self, x: Array, held: str | None = None) -> Best:
-        """Least squares where runs without a jump in the data are divided as the model has it; see `Data.divided`."""
+    def settled(self, x: Array, held: str | None = None, *, loose: bool = False) -> Best:
+        """Least squares where runs without a jump in the data are divided as the model has it; see `Data.divided`.
+
+        If `loose`, the coordinates are a first guess, and the samples alone decide on the first division.
+        """
         runs = self.data.runs
-        for _ in range(ROUNDS):
-            divided = self.data.divided(self.branches(self.apparatus(x)))
+        for i in range(ROUNDS):
+            divided = self.data.divided(self.branches(self.apparatus(x)), loose=loose and not i)
             found = replace(replace(self, data=divided).best(x, held), asked=self)
             if runs == divided.runs:
                 break

@@ -247,7 +247,7 @@ def best_of(name: str, prepared: Prepared, given: Mapping[str, Measured], other:
         spacing = other.units(apparatus).tabor / float(tabor)
         problem = Problem(THEORIES[name], other, data, replace(apparatus, spacing=spacing), fitted, prior, nominal)
         problem = replace(problem, start=replace(problem.start, contact_point=_first_contact(problem, prepared)))
-        found.append(problem.settled(np.zeros(len(fitted))))
+        found.append(problem.settled(np.zeros(len(fitted)), loose=True))
     best = min(found, key=lambda one: one.chi2)
     if name == "jkr":
         return [best]
@@ -287,7 +287,7 @@ def _values(best: Best, others: Sequence[Best]) -> dict[str, Value]:
         if name == "spacing":
             ends = best.interval(name, _limits(best), others)
         elif name != "contact_point":  # a nuisance, for which the curvature will do
-            ends = best.interval(name, (at - RANGE, at + RANGE))
+            ends = best.interval(name, (at - RANGE, at + RANGE), others)
         low, high = (None if end is None else problem.value(name, end) for end in ends)
         found[name] = Value(getattr(best.apparatus, name), low, high, UNITS[name])
     return found
