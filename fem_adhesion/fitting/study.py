@@ -22,6 +22,9 @@ from halfspace.limits import require_one_of, require_poisson
 from halfspace.values import Array
 
 TABORS = np.geomspace(LEAST, SOFTEST, 13)  # from which fits start; three times the next
+NEARLY = 1.1  # chi square, in the least of those at fixed Tabor parameters, up to which a free fit starts from there
+SOFT = 20.0  # Tabor parameter from which on fits end in JKR's, wherever they start
+FAR_OFF = 3.0  # times the measured pull-off force that a fit's may be
 COARSE = 3  # every third serves the models beside the atlas, which end anywhere
 ATLAS = "atlas"
 UNITS: Mapping[str, str] = {
@@ -230,7 +233,7 @@ def data_of(prepared: Prepared, stiffness: float) -> Data:
 
 
 def best_of(name: str, prepared: Prepared, given: Mapping[str, Measured], other: Other) -> list[Best]:
-    """Best fit of a model, then those at fixed Tabor parameters from which it starts; JKR's has no spacing to fit."""
+    """Best fit of a model, then all others, which start at Tabor parameters; JKR's has no spacing to fit."""
     prior = {key: each for key, each in given.items() if 0 < each.deviation < math.inf}
     moved = tuple(key for key, each in given.items() if each.deviation > 0)
     nominal = given["stiffness"].value if prepared.curve.deflection_given else None
@@ -248,13 +251,26 @@ def best_of(name: str, prepared: Prepared, given: Mapping[str, Measured], other:
         problem = Problem(THEORIES[name], other, data, replace(apparatus, spacing=spacing), fitted, prior, nominal)
         problem = replace(problem, start=replace(problem.start, contact_point=_first_contact(problem, prepared)))
         found.append(problem.settled(np.zeros(len(fitted)), loose=True))
-    best = min(found, key=lambda one: one.chi2)
+    found = [one for one in found if _has_pull_off(one, prepared)] or found
+    found.sort(key=lambda one: one.chi2)
     if name == "jkr":
-        return [best]
-    problem = replace(
-        best.problem, start=best.apparatus, fitted=("work_of_adhesion", "spacing", *fitted[1:]), data=data
-    )
-    return [problem.settled(np.zeros(len(problem.fitted))), *found]
+        return found
+    free = list[Best]()
+    near = [one for one in found[1:] if one.chi2 < NEARLY * found[0].chi2 and _tabor(one) < SOFT]
+    for one in [found[0], *(near if name == ATLAS else [])]:
+        named = ("work_of_adhesion", "spacing", *fitted[1:])
+        free.append(replace(one.asked, start=one.apparatus, fitted=named).settled(np.zeros(len(named))))
+    return sorted([*free, *found], key=lambda one: (one not in free, one.chi2))
+
+
+def _tabor(one: Best) -> float:
+    return one.problem.other.units(one.apparatus).tabor
+
+
+def _has_pull_off(one: Best, prepared: Prepared) -> bool:
+    """Whether a fit's pull-off force is near the measured one: a contact point far off makes a minimum without."""
+    load = one.problem.other.units(one.apparatus).load / one.apparatus.sensitivity
+    return 1 / FAR_OFF < load * 1.75 * math.pi / prepared.pull_off < FAR_OFF
 
 
 def _hertz(prepared: Prepared, start: Mapping[str, float], other: Other) -> float:
