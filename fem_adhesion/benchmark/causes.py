@@ -33,7 +33,7 @@ BOXES: Mapping[str, float] = {
     "free at beta/L of": -CLAMPED,
     "attracting no farther than beta/L of": 0.0,
 }
-ACTS = ("tabor", "load", "radius")
+ACTS = ("Tabor parameter", "loads", "radii")
 
 
 @dataclass(frozen=True)

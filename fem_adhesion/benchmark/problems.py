@@ -43,7 +43,7 @@ KINDS = {
 KINDS |= {"energy": "energy", "energy_lost": "energy"}
 """Kind of each quantity, which has its unit, by its name."""
 
-PLACES = 1000  # on a curve of the atlas: how events change along it is then right to a thousandth
+PLACES = 1000  # on a curve of the atlas: how events change along it is then right to two thousandths
 
 
 @dataclass(frozen=True)
