@@ -30,7 +30,7 @@ lines, noise = ["piezo_m,force_N,segment"], np.random.default_rng(1)
 for segment, jump, bases in (("approach", on, travel), ("retract", off, travel[::-1])):
     for base in bases:
         branch = "separated" if base < jump else "contact"
-        if base < far:  # beyond the atlas it is rigid
+        if branch == "separated" and base < far:  # beyond the atlas, where it is rigid
             load = closed_forms.bradley_load(base)
         else:
             load = curve.at(base=base, stiffness=stiffness, branch=branch).load
