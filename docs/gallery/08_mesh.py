@@ -15,7 +15,7 @@ import fem_adhesion
 
 file = next(folder / "meshes/tip.msh" for folder in Path.cwd().parents if (folder / "meshes/tip.msh").exists())
 tip = fem_adhesion.Meshed(file, radius_ratio=100.0)
-path = fem_adhesion.trace(fem_adhesion.Scene(tabor=1.0, body=tip), rtol=1e-3)
+path = fem_adhesion.trace(fem_adhesion.Scene(tabor=0.5, body=tip), rtol=1e-3)
 for name, event in path.events.items():
     print(f"{name:10} approach {event.approach:8.4f} eps, load {event.load:8.4f} R dgamma")
 
