@@ -15,6 +15,7 @@ NAMES |= {"modulus": "E", "stiffness": "the stiffness", "sensitivity": "the sens
 NAMES |= {"compliance": "the compliance in series"}
 CLEAR = 6.0  # difference of the criterion from which one model is clearly preferred: a likelihood ratio of 20
 MISSED = 0.1  # share of the pull-off force by which a fit misses what a curve shows best
+DRAWN = 2.0  # standard errors from what was given at which the fit contradicts it
 KNOWN = 0.5  # half width of an interval of the logarithm from which a number counts as settled
 FINER = {"noise of a third": (3.0, 1.0), "ten times as many samples at the jumps": (1.0, 10.0)}
 """Other measurements: how much smaller the error of the samples and that of the places of the jumps are."""
@@ -55,6 +56,11 @@ def warnings(fit: Fit) -> Iterator[str]:
             f"The fitted contact pulls off at {engineering(pull_off, 'N')}, the curve at {engineering(data, 'N')}: "
             f"its dgamma is not that of the pull-off."
         )
+    for name, given in best.problem.prior.items():
+        off = abs(fit.values[name].value - given.value) / given.deviation
+        if off > DRAWN:
+            was = sized(given.value, fit.values[name].unit)
+            yield f"{NAMES[name]} ended {off:.2g} standard errors from the {was} that was given."
     others = [one for one in fit.candidates if one.name != ATLAS]
     if others and first.name != ATLAS:
         own = next(one for one in fit.candidates if one.name == ATLAS)

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -94,8 +95,12 @@ def test_what_is_known_before_narrows_what_is_free():
     truth = _truth(1.0, 0.3e-9, 0.05)
     widths = []
     for error in (0.2, 0.01):
-        value = _fit(truth, 0.01, radius=Measured(RADIUS, error * RADIUS)).values["work_of_adhesion"]
+        found = _fit(truth, 0.01, radius=Measured(RADIUS, error * RADIUS))
+        value, radius = found.values["work_of_adhesion"], found.values["radius"]
         assert _holds(value, WORK)
+        assert not any("R ended" in line for line in words.warnings(found))
+        drawn = replace(found, values={**found.values, "radius": replace(radius, value=(1 - 3 * error) * RADIUS)})
+        assert any("R ended 3 standard errors from the 50 nm" in line for line in words.warnings(drawn))
         widths.append(value.high - value.low)
     assert widths[1] < widths[0] / 3
 
