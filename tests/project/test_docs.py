@@ -15,6 +15,7 @@ from whole_runs import ROOT
 
 import fem_adhesion
 import halfspace
+from fem_adhesion import cli
 
 SCRIPTS = sorted((ROOT / "docs/gallery").glob("*.py"))
 LOADED = {"img": "src", "script": "src", "link": "href", "iframe": "src", "video": "src", "source": "src"}
@@ -83,6 +84,13 @@ def test_every_public_name_is_documented(package, pages, site):
     there = pages[site / f"reference/api/{package.__name__.removeprefix('halfspace.')}.html"].places
     names = [name for name in package.__all__ if callable(getattr(package, name))]
     assert [name for name in names if f"{package.__name__}.{name}" not in there] == []
+
+
+def test_every_command_has_a_section_with_its_help():
+    page = (ROOT / "docs/reference/commands.md").read_text()
+    for command in cli.COMMANDS:
+        assert f"\n## {command.name}\n" in page
+        assert f"\nfem-adhesion {command.name} --help\n" in page
 
 
 def test_no_picture_is_older_than_the_code_that_draws_it():
