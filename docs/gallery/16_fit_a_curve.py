@@ -1,4 +1,4 @@
-"""
+r"""
 Fit a measured curve
 ====================
 
@@ -6,7 +6,8 @@ Your AFM has recorded force against the travel of the piezo, on the way in and o
 adhesion and the range of the attraction? Give the curve as CSV, its units in the header, or as the file of the
 instrument, with what you know of the tip and the cantilever::
 
-    fem-adhesion fit curve.csv --radius 50nm --modulus 5GPa --poisson 0.3 --stiffness 2N/m --plot fit.png
+    fem-adhesion fit curve.csv --radius 50nm --modulus 5GPa --poisson 0.3 \
+        --stiffness 2N/m --plot fit.png
 
 Here the curve is made up, with noise, so that the truth is known: 0.05 J/m², and a spacing of 0.3 nm.
 """
