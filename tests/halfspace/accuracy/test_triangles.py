@@ -59,7 +59,7 @@ def test_events_are_right_within_their_estimates_and_as_accurate_as_asked(tabor,
     [
         *itertools.product([Morse(3.0)], [PARABOLOID], STRAIGHT),
         *itertools.product([LENNARD_JONES], [Power(4)], STRAIGHT),
-        *itertools.product([Dugdale(0.1)], [PARABOLOID], STRAIGHT),
+        (Dugdale(0.1), PARABOLOID, "triangles"),
     ],
     ids=str,
 )
