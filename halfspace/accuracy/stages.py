@@ -12,7 +12,7 @@ from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.events import FOLDS, USUAL, ErrorRule, Event, estimate_event, is_event
 from halfspace.equilibrium.search import Chains
-from halfspace.equilibrium.states import met_again
+from halfspace.equilibrium.states import met_again, with_beside
 from halfspace.errors import NotConverged, Unsolved
 from halfspace.values import Valued
 
@@ -73,20 +73,13 @@ class Rung(Valued):
 
     def chains_of(self, event: Located) -> Chains | Unsolved:
         """Those of one event."""
-        chain, beside = [event], list[list[Located]]()
+        chain = [event]
         for stage in self.stages:
             found = met_again(stage, chain[-1])
             if not found:
                 return found
             chain.append(found)
-        if self.coarser:
-            chain.insert(0, met_again(self.coarser, event) or event)
-        if self.twin:
-            found = met_again(self.twin, chain[-1])
-            if not found:
-                return found
-            beside.append([found, chain[-1]])
-        return [chain, *beside]
+        return with_beside(chain, self.twin, self.coarser, met_again)
 
     def estimates(self, found: Mapping[str, Chains]) -> dict[str, Event]:
         """Events, with their changes along the chains as errors."""

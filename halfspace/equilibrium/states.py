@@ -79,15 +79,25 @@ class Ladder(Valued):
 
     def chains(self, fine: T, again: Callable[[Stage, T], T | Unsolved]) -> list[list[T]] | Unsolved:
         """Chains to a state of the finest discretisation, where `again` solves for it on another one."""
-        chain, twin = list[T](), list[T]()
-        for stage in (*self.chain[:-1], self.twin):
-            there = again(stage, fine) if stage else fine
+        chain = [fine]
+        for stage in self.chain[-2::-1]:
+            there = again(stage, fine)
             if isinstance(there, Unsolved):
                 return there
-            (twin if stage is self.twin else chain).append(there)
-        if self.coarser:
-            chain.insert(0, again(self.coarser, fine) or chain[0])
-        return [[*chain, fine], [*twin, fine]] if self.twin else [[*chain, fine]]
+            chain.insert(0, there)
+        return with_beside(chain, self.twin, self.coarser, again)
+
+
+def with_beside(
+    chain: Sequence[T], twin: Stage | None, coarser: Stage | None, again: Callable[[Stage, T], T | Unsolved]
+) -> list[list[T]] | Unsolved:
+    """Chains of a state: its own, after a coarser discretisation where that has it, and from a twin to its last."""
+    fine = chain[-1]
+    own = [again(coarser, fine) or chain[0], *chain] if coarser else list(chain)
+    if twin is None:
+        return [own]
+    there = again(twin, fine)
+    return there if isinstance(there, Unsolved) else [own, [there, fine]]
 
 
 def met_again(stage: Stage, state: Located) -> Located | Unsolved:
