@@ -43,7 +43,6 @@ EXACT = float(norm.isf((1 - LEVEL) / 2))  # standard errors in half an interval
 NORMAL = float(norm.isf(0.25))  # median size of a normal error, in its standard deviation
 WIDER = 1.24  # ends of a pair's contour, in those of one of them: the root of both quantiles' ratio
 WHITE = 1e-3  # chance below which residuals are no noise
-SMALL = 1.1  # chi square per degree of freedom that the baseline's noise may be off by
 
 
 @dataclass(frozen=True)
@@ -136,7 +135,9 @@ class Fit:
     @property
     def misfit(self) -> bool:
         """Whether the residuals are more than the noise."""
-        most = 1 + (SMALL - 1) + norm.isf(WHITE) * math.sqrt(2 / self.best.degrees)
+        data = self.best.problem.data
+        known = data.travel.size / 2 * (1 - data.correlation**2) / (1 + data.correlation**2)  # samples of the baseline
+        most = 1 + norm.isf(WHITE) * math.sqrt(2 / self.best.degrees + 2 / known)
         loud = self.best.chi2 / self.best.degrees > most
         return bool(loud or any(part.chance < WHITE / len(self.branches) for part in self.branches))
 

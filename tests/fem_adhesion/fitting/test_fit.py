@@ -6,14 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from iminuit import Minuit
 from synthetic_curves import synthetic
 
 import fem_adhesion
+import halfspace
 from fem_adhesion import cli
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.fitting import words
 from fem_adhesion.fitting.model import Apparatus, Other, by_atlas, by_jkr, recorded
+from halfspace import Layer
 from halfspace.atlas import curve
+from halfspace.laws.formulas import Morse
 
 RADIUS, POISSON, WORK = 50e-9, 0.3, 0.05
 FREE = Measured(1.0, math.inf)
@@ -89,6 +93,37 @@ def test_a_wrong_compliance_is_a_misfit():
     assert not freed.misfit
     assert not any("pulls off at" in line for line in words.warnings(freed))
     assert _holds(freed.values["work_of_adhesion"], WORK)
+
+
+def test_intervals_are_those_of_minos():
+    best = (found := _fit(_truth(1.0, 0.3e-9, 0.05), 0.005)).best
+    minuit = Minuit(best.problem, best.x, name=best.problem.fitted)
+    minuit.errordef = best.scale
+    minuit.migrad()
+    minuit.minos("work_of_adhesion", "spacing", cl=0.95)
+    for name in ("work_of_adhesion", "spacing"):
+        ends = minuit.merrors[name]
+        assert ends.is_valid
+        theirs = [best.problem.value(name, minuit.values[name] + by) for by in (ends.lower, ends.upper)]
+        width = theirs[1] - theirs[0]
+        assert (found.values[name].low, found.values[name].high) == pytest.approx(theirs, rel=0, abs=0.02 * width)
+
+
+@pytest.mark.parametrize(("law", "body", "misfit"), [(Morse(3.0), None, False), (None, Layer(2.0, 0.3), True)])
+def test_data_of_another_contact_do_not_pass_without_a_warning(law, body, misfit):
+    """A layer shows in the residuals on a stiff spring; a Morse law hides in another eps, and is warned of."""
+    path = halfspace.trace(1.0, rtol=1e-3, to_load=7.0, body=body, **({"law": law} if law else {})).resampled(300)
+    found = _fit(_truth(1.0, 0.3e-9, 2.0), 0.002, theory=lambda _: _continued(path.approach, path.load))
+    value = found.values["work_of_adhesion"]
+    assert not _holds(value, WORK)
+    assert found.misfit or not misfit
+    assert any("depends on the law" in line for line in words.warnings(found))
+
+
+def _continued(approach, load):
+    """A curve with an attraction of h^-2 before it."""
+    h = (1 - approach[0]) * np.geomspace(1e6, 1, 200)[:-1]
+    return np.hstack([[1 - h, load[0] * ((1 - approach[0]) / h) ** 2], [approach, load]])
 
 
 def test_what_is_known_before_narrows_what_is_free():
