@@ -42,7 +42,17 @@ def interval(value: Value) -> str:
 
 def warnings(fit: Fit) -> Iterator[str]:
     """What forbids to take the numbers as they stand."""
-    best, first = fit.best, fit.candidates[0]
+    yield from _misfit(fit)
+    yield from _models(fit)
+    yield LAW
+    for name, value in fit.values.items():
+        if not value.identified:
+            yield open_end(fit, name, value)
+
+
+def _misfit(fit: Fit) -> Iterator[str]:
+    """Where the fit and the curve, or what was known before, are apart."""
+    best = fit.best
     if fit.misfit:
         worst = max(fit.branches, key=lambda part: part.mean_square)
         times = math.sqrt(best.chi2 / best.degrees)
@@ -67,29 +77,26 @@ def warnings(fit: Fit) -> Iterator[str]:
         if off > DRAWN:
             was = sized(given.value, fit.values[name].unit)
             yield f"{NAMES[name]} ended {off:.2g} standard errors from the {was} that was given."
-    others = [one for one in fit.candidates if one.name != ATLAS]
-    if others and first.name != ATLAS:
-        own = next(one for one in fit.candidates if one.name == ATLAS)
-        better = own.criterion - first.criterion
-        if better > CLEAR:
-            spread = abs(math.log(first.apparatus.work_of_adhesion / own.apparatus.work_of_adhesion))
-            yield (
-                f"{first.name} fits better than the atlas, by {better:.3g} in Akaike's criterion; its dgamma differs "
-                f"by {100 * spread:.2g} %."
-            )
-    work = fit.values["work_of_adhesion"]
-    least = min(one.criterion for one in fit.candidates)
-    for one in others:
+
+
+def _models(fit: Fit) -> Iterator[str]:
+    """Where models disagree."""
+    work, first = fit.values["work_of_adhesion"], fit.candidates[0]
+    own = next(one for one in fit.candidates if one.name == ATLAS)
+    if own.criterion - first.criterion > CLEAR:
+        spread = abs(math.log(first.apparatus.work_of_adhesion / own.apparatus.work_of_adhesion))
+        yield (
+            f"{first.name} fits better than the atlas, by {own.criterion - first.criterion:.3g} in Akaike's criterion; "
+            f"its dgamma differs by {100 * spread:.2g} %."
+        )
+    for one in fit.candidates:
         found = one.apparatus.work_of_adhesion
-        if one.criterion - least < CLEAR and not (work.low or 0.0) <= found <= (work.high or math.inf):
+        is_like = one.criterion - first.criterion < CLEAR and one is not own
+        if is_like and not (work.low or 0.0) <= found <= (work.high or math.inf):
             yield (
                 f"{one.name} fits alike with dgamma = {sized(found, work.unit)}, outside the interval: the curve does "
                 "not tell the two apart, and dgamma is as uncertain as they differ."
             )
-    yield LAW
-    for name, value in fit.values.items():
-        if not value.identified:
-            yield open_end(fit, name, value)
 
 
 def open_end(fit: Fit, name: str, value: Value) -> str:
