@@ -30,7 +30,12 @@ def run(options: argparse.Namespace) -> int:
     """Compare all scenes asked for, print a table each, and write the record."""
     from fem_adhesion.common.record import record as run_record
     from fem_adhesion.crosscheck import scenes as comparisons
-    from fem_adhesion.crosscheck.comparison import crosscheck_record, crosscheck_tables, require_comparable
+    from fem_adhesion.crosscheck.comparison import (
+        crosscheck_record,
+        crosscheck_tables,
+        require_comparable,
+        verdict_told,
+    )
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
@@ -40,21 +45,22 @@ def run(options: argparse.Namespace) -> int:
     console, cases = console_beside(options.json), []
     with all_written(json=options.json) as files:
         solved = comparisons.run(scenes, rtol=options.rtol, jobs=options.jobs, dask=options.dask)
-        for done, scene in enumerate(scenes):
-            with progress_bar() as step:  # it is gone when a table is printed, which would break it
+        with progress_bar() as step:
+            for done, scene in enumerate(scenes):
                 step(f"tabor {scene.tabor:g}", done, len(scenes))
-                cases.append(case := next(solved))
-            if case.reason:
-                failed = f"{', '.join(scene.words)}: failed: {case.told}"
-                lines = [failed, *(f"  {row.quantity}: {row.verdict}" for row in case.rows)]
-                console.print("\n".join(lines), highlight=False, markup=False)
-            else:
-                console.print(*crosscheck_tables(case))
-            console.print()
+                cases.append(next(solved))
         record = run_record(rtol=options.rtol) | crosscheck_record(cases)
         if "json" in files:
             json.dump(record, files["json"], indent=1, allow_nan=False)
-    console.print(f"verdict: {record['verdict']}", highlight=False)
+    console.print(*verdict_told(cases), "", sep="\n", highlight=False, markup=False)
+    for case in cases:
+        if case.reason:
+            failed = f"{', '.join(case.scene.words)}: failed: {case.told}"
+            lines = [failed, *(f"  {row.quantity}: {row.verdict}" for row in case.rows)]
+            console.print("\n".join(lines), highlight=False, markup=False)
+        else:
+            console.print(*crosscheck_tables(case))
+        console.print()
     return AGREE if record["verdict"] == "agree" else DISAGREE
 
 

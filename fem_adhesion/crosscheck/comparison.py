@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_adhesion.common.facts import plain, versions
+from fem_adhesion.common.numbers import counted
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.errors import InputError
 from halfspace.values import Estimate
@@ -130,6 +131,23 @@ def require_comparable(scene: Scene, rtol: float) -> None:
 def overall_verdict(cases: Sequence[Case]) -> Verdict:
     """The worst verdict of all."""
     return min((case.verdict for case in cases), key=VERDICTS.index)
+
+
+def verdict_told(cases: Sequence[Case]) -> list[str]:
+    """The verdict of all in a line, then the difference that is largest beside its errors, and what does not agree."""
+    rows = [(case, row) for case in cases for row in case.rows]
+    other = [
+        f"{row.quantity}, tabor {case.scene.tabor:g}: {row.verdict}" for case, row in rows if row.verdict != "agree"
+    ]
+    lines = [f"verdict: {overall_verdict(cases)}"]
+    told = [(row.difference / row.error, case, row) for case, row in rows if row.difference and row.error > 0]
+    if told:
+        part, case, row = max(told, key=lambda one: one[0])
+        lines += [
+            f"{len(rows)} quantities of {counted(len(cases), 'scene')}; the largest difference is {100 * part:.2g} % of "
+            f"both errors: {row.quantity}, tabor {case.scene.tabor:g}"
+        ]
+    return [*lines, *other]
 
 
 def crosscheck_record(cases: Sequence[Case]) -> dict[str, Any]:
