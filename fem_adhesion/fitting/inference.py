@@ -25,6 +25,7 @@ from halfspace.values import Array
 LEVEL = 0.95  # of all intervals
 BLIND = 1e6  # largest ratio of two standard errors
 FARTHEST = 12.0  # coordinates beyond which nothing is asked for: a factor of 1e5
+FEW = 5  # samples on either side of a division at least, of which a slope is known
 ROUNDS = 5  # of dividing runs and fitting; two are usual
 STEPS: Mapping[str, Any] = {"diff_step": 1e-4, "x_scale": 0.1, "xtol": 1e-5, "ftol": 1e-7, "max_nfev": 300}
 """Of least squares: derivatives over 1e-4 see past the kinks between the places of a curve."""
@@ -159,7 +160,7 @@ class Data:
             gain = ((rest[run.samples] - first) ** 2 - (rest[run.samples] - then) ** 2)[1:] / noise**2
             between = (z[1:] + z[:-1]) / 2
             off = ((between - turn) / error) ** 2 * (not loose)
-            i = int(np.argmin(np.cumsum(gain) - gain + off)) + 1
+            i = int(np.argmin((np.cumsum(gain) - gain + off)[FEW:-FEW])) + FEW + 1
             names = ("contact", "separated") if run.segment else ("separated", "contact")
             start, stop = run.samples.start, run.samples.stop
             parts = slice(start, start + i), slice(start + i, stop)
