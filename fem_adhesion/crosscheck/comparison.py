@@ -143,10 +143,9 @@ def verdict_told(cases: Sequence[Case]) -> list[str]:
     told = [(row.difference / row.error, case, row) for case, row in rows if row.difference and row.error > 0]
     if told:
         part, case, row = max(told, key=lambda one: one[0])
-        lines += [
-            f"{len(rows)} quantities of {counted(len(cases), 'scene')}; the largest difference is {100 * part:.2g} % of "
-            f"both errors: {row.quantity}, tabor {case.scene.tabor:g}"
-        ]
+        count = f"{len(rows)} quantities of {counted(len(cases), 'scene')}"
+        worst = f"{100 * part:.2g} % of both errors: {row.quantity}, tabor {case.scene.tabor:g}"
+        lines.append(f"{count}; the largest difference is {worst}")
     return [*lines, *other]
 
 
