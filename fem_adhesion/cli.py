@@ -51,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in STUDIES:
             raise
-        return _told(f"{error.name} is not installed; pip install 'fem-adhesion[studies]'", BAD_INPUT)
+        return _told(f"{error.name} is not installed; pip install '.[studies]' in a clone", BAD_INPUT)
     except NotWritten as error:
         return _told(error, NOT_WRITTEN)
     except KeyboardInterrupt as how:

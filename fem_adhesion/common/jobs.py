@@ -214,7 +214,7 @@ def _cluster(address: str, width: int) -> Pool:
     try:
         distributed = importlib.import_module("distributed")
     except ModuleNotFoundError as error:
-        raise InputError(f"dask = {address} needs the extra cluster; pip install 'fem-adhesion[cluster]'") from error
+        raise InputError(f"dask = {address} needs the extra cluster; pip install '.[cluster]' in a clone") from error
     found, seconds = address if "://" in address else f"tcp://{address}", PATIENCE.connection
     try:
         place = urlsplit(found)

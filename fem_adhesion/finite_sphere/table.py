@@ -137,7 +137,7 @@ NUMBERS = ("value", "baseline", "half_space", "deviation")  # each followed by i
 FIELDS = tuple(field.name for field in fields(DeviationRow))
 COLUMNS = tuple(n for name in FIELDS for n in ((name, f"{name}_error") if name in NUMBERS else (name,)))
 TEXTS = ("cause", "quantity", "unit", "status", "reason", "kind")
-NO_PARQUET = "no Parquet file is written, which needs the extra parquet; pip install 'fem-adhesion[parquet]'"
+NO_PARQUET = "no Parquet file is written, which needs the extra parquet; pip install '.[parquet]' in a clone"
 
 
 def write_tables(rows: Sequence[DeviationRow], directory: Path) -> str:

@@ -70,7 +70,7 @@ def _library(name: str, extra: str) -> Any:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
         raise InputError(
-            f"{name.partition('.')[0]} is not installed, limit: the extra {extra}; pip install 'fem-adhesion[{extra}]'"
+            f"{name.partition('.')[0]} is not installed, limit: the extra {extra}; pip install '.[{extra}]' in a clone"
         ) from error
 
 

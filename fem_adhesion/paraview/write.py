@@ -75,7 +75,7 @@ def require_pyvista() -> Any:
         import pyvista
     except ImportError as error:
         raise InputError(
-            "pyvista is not installed, which writes VTK files; pip install 'fem-adhesion[view]'"
+            "pyvista is not installed, which writes VTK files; pip install '.[view]' in a clone"
         ) from error
     return pyvista
 

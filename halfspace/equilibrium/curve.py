@@ -311,7 +311,7 @@ class EquilibriumPath(Valued):
         try:
             from pandas import DataFrame  # here, because few have it
         except ModuleNotFoundError as error:
-            raise InputError("a frame needs pandas; pip install 'fem-adhesion[frames]', or take to_dict") from error
+            raise InputError("a frame needs pandas; pip install '.[frames]' in a clone, or take to_dict") from error
         return DataFrame(points_of(self))
 
     def _observable(self, index: int) -> Array:

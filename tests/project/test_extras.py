@@ -34,7 +34,7 @@ def test_each_library_of_the_extra_is_named_with_it(library, monkeypatch, capsys
     monkeypatch.setattr(cli, "COMMANDS", (replace(speed.COMMAND, run=missing),))
     assert cli.main(["speed", "--out", "out"]) == 2
     assert capsys.readouterr().err == (
-        f"fem-adhesion: {library}.part is not installed; pip install 'fem-adhesion[studies]'\n"
+        f"fem-adhesion: {library}.part is not installed; pip install '.[studies]' in a clone\n"
     )
 
 
@@ -60,6 +60,6 @@ def test_a_command_without_the_extra_says_what_to_install(arguments, tmp_path, m
     done = without_the_extra(f"from fem_adhesion import cli\nsys.exit(cli.main({arguments}))")
     assert done.returncode == 2
     assert done.stderr.startswith("fem-adhesion: ")
-    assert done.stderr.endswith(" is not installed; pip install 'fem-adhesion[studies]'\n")
+    assert done.stderr.endswith(" is not installed; pip install '.[studies]' in a clone\n")
     assert done.stderr.count("\n") == 1
     assert not list(tmp_path.iterdir())

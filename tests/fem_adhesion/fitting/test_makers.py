@@ -78,5 +78,5 @@ def test_a_damaged_file_is_refused_in_one_line(name, tmp_path, capfd):
 def test_a_missing_library_is_named_with_its_extra(name, extra, monkeypatch):
     for library in ("afmformats", "NSFopen", "NSFopen.read"):
         monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(InputError, match=rf"pip install 'fem-adhesion\[{extra}\]'"):
+    with pytest.raises(InputError, match=rf"pip install '\.\[{extra}\]' in a clone"):
         read(DATA / name)
