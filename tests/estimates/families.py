@@ -107,7 +107,7 @@ few_places = partial(places, parts=(0.4,), coordinates=("approach", "load"))
 
 def of_assessment(assessment):
     """What the computed models say in SI."""
-    models = [m for m in assessment.models if m.is_computed]
+    models = [m for m in assessment.models if m.source != "theory"]
     return {f"{m.model}, {what}": Estimate(q.value, q.error) for m in models for what, q in m.values.items()}
 
 
@@ -177,7 +177,7 @@ def in_si(contact, assessment, _):
         "true profile": lambda: halfspace.trace(tabor, profile=Sphere(rho), rtol=1e-9),
         "finite sphere": lambda: fem_adhesion.trace(sphere(tabor, rho, poisson=contact.poisson), rtol=1e-6),
     }
-    for model in (m.model for m in assessment.models if m.is_computed):
+    for model in (m.model for m in assessment.models if m.source != "theory"):
         path = solved[model]()
         both, pull_off = cycle(path, k), path.event("pull_off")
         told = {
