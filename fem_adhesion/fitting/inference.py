@@ -211,6 +211,14 @@ class Problem:
         start: float = getattr(self.start, name)
         return math.log(value / start) if name in SCALES else (value - start) / self._unit(name)
 
+    def departure(self, name: str, value: float) -> float:
+        """Standard errors from what was known to a value; log-normal where the quantity is positive.
+
+        A normal error would leave a radius of 10 +- 3 nm free to run to zero for 3.3 standard errors, and it did.
+        """
+        known, error = self.prior[name]
+        return math.log(value / known) * known / error if name in SCALES else (value - known) / error
+
     def _unit(self, name: str) -> float:
         units = self.other.units(self.start)
         return units.approach + units.displacement if name == "contact_point" else 1 / self.start.stiffness
@@ -225,7 +233,7 @@ class Problem:
         found = self.branches(apparatus)
         samples = self.data.compared(self.data.modelled(found))
         places = [((found.on if at.jump == "on" else found.off) - at.travel) / at.error for at in self.data.places]
-        known = [(getattr(apparatus, name) - given.value) / given.deviation for name, given in self.prior.items()]
+        known = [self.departure(name, getattr(apparatus, name)) for name in self.prior]
         return np.concatenate([samples, places, known])
 
     def __call__(self, x: Array) -> float:

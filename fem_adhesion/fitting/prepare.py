@@ -23,6 +23,7 @@ ROUNDS = 4  # of clipping and of moving the contact, after which neither changes
 TURN = 50  # samples next to the turn, which are in contact if any are
 RUN = 5  # samples in a row beyond the noise that are a contact, or equal at an extreme force a detector's limit
 MAD = 1.4826  # standard deviation of normal noise in its median absolute deviation
+ROUNDED = 1e-9  # share of its way by which a travel scatters where a file's digits end; converters resolve 1e-8 at best
 SETTLED = 0.03  # share of the steepest step of a jump below which it is over; amplifiers ring and creep
 SMEARED = 10  # samples over which a jump is seen at most: amplifiers smear those of the curves tried over 2 to 7
 
@@ -166,10 +167,12 @@ def _steadied(curve: ForceCurve) -> ForceCurve:
         stiffness = np.polyfit(slow - slow.mean(), force, 1)[0]
         recorded += float(np.var(np.diff(force - stiffness * own)))
         steady += float(np.var(np.diff(force - stiffness * slow)))
-    if recorded <= steady:
+    scatter = float(np.std(curve.travel - smooth))
+    if recorded <= steady or scatter < ROUNDED * float(np.ptp(curve.travel)):
         return curve
-    scatter = engineering(float(np.std(curve.travel - smooth)), "m")
-    why = f"The travel scatters by {scatter}, which the force does not follow: it was smoothed in time."
+    why = (
+        f"The travel scatters by {engineering(scatter, 'm')}, which the force does not follow: it was smoothed in time."
+    )
     return replace(curve, travel=smooth, told=(*curve.told, why))
 
 

@@ -73,7 +73,7 @@ def _misfit(fit: Fit) -> Iterator[str]:
             f"its dgamma is not that of the pull-off."
         )
     for name, given in best.problem.prior.items():
-        off = abs(fit.values[name].value - given.value) / given.deviation
+        off = abs(best.problem.departure(name, fit.values[name].value))
         if off > DRAWN:
             was = sized(given.value, fit.values[name].unit)
             yield f"{NAMES[name]} ended {off:.2g} standard errors from the {was} that was given."

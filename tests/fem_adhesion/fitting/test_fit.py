@@ -134,7 +134,7 @@ def test_what_is_known_before_narrows_what_is_free():
         value, radius = found.values["work_of_adhesion"], found.values["radius"]
         assert _holds(value, WORK)
         assert not any("R ended" in line for line in words.warnings(found))
-        drawn = replace(found, values={**found.values, "radius": replace(radius, value=(1 - 3 * error) * RADIUS)})
+        drawn = replace(found, values={**found.values, "radius": replace(radius, value=math.exp(-3 * error) * RADIUS)})
         assert any("R ended 3 standard errors from the 50 nm" in line for line in words.warnings(drawn))
         widths.append(value.high - value.low)
     assert widths[1] < widths[0] / 3
