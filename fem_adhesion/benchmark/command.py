@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     """
     if (options.submission is None) == (options.problems is None):
         raise InputError(
-            "a CSV file and --problems, limit: one of both; give numbers to compare, or a directory for sheets"
+            "a CSV file and --problems are given; give numbers to compare or a directory for sheets, not both"
         )
     if options.problems is not None:
         return _write(options)

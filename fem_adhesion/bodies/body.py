@@ -94,7 +94,7 @@ class Body(Known, ABC):
             keep(self, material=LinearElastic(poisson))
         elif poisson is not None and require_poisson(poisson) != self.material.poisson:
             raise InputError(
-                f"poisson = {poisson:g} with material = {self.material}, limit: one of both; leave one out"
+                f"poisson = {poisson:g} and material = {self.material} are given; give one of them, not both"
             )
         if self.material.finite and not self.stretches:
             raise InputError(

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import math
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from fem_adhesion.common.words import Length, in_beta, part_in, usage
@@ -46,7 +47,11 @@ def add_contact(command: Parser, *, in_si_only: bool = False) -> None:
         ("radius", "RADIUS", "material: radius of the sphere, as 100nm"),
         ("modulus", "MODULUS", "material: its Young's modulus, as 72GPa"),
         ("work-of-adhesion", "ENERGY", "material: as 0.063J/m^2 or 63mN/m"),
-        ("spacing", "SPACING", "material: equilibrium spacing of the surface law, as 0.143nm"),
+        (
+            "spacing",
+            "SPACING",
+            "material: equilibrium spacing, as 0.143nm; --law may have lengths then, as morse:0.05nm",
+        ),
         ("hamaker", "ENERGY", "material: Hamaker constant instead of the spacing, A = 16 pi dgamma eps^2, as 65zJ"),
         ("counter-modulus", "MODULUS", "material: of the other body; rigid unless given"),
         ("counter-radius", "RADIUS", "material: of the other body; flat unless given"),
@@ -143,9 +148,24 @@ def _counter(options: argparse.Namespace) -> Any:
 
 
 def law_of(options: argparse.Namespace) -> Law:
-    """Law given, or the 3-9 law."""
-    law: Law = part_in("law", options.law or "power-law")
+    """Law given, or the 3-9 law; with a spacing its lengths may have a unit, k and the screening as their inverse."""
+    length: Length = in_beta
+    if getattr(options, "spacing", None) is not None:
+        length = partial(_in_eps, options.spacing)
+    law: Law = part_in("law", options.law or "power-law", length)
     return law
+
+
+def _in_eps(spacing: str, name: str, text: str) -> float:
+    """Length of a law in units of the spacing, which must be exact: the draws of an assessment keep the law."""
+    from fem_adhesion.common.numbers import measured, parse
+
+    eps = measured(spacing, "spacing")
+    if eps.deviation:
+        raise InputError(
+            f"spacing = {spacing} with {name} = {text}, limit: no deviation; give {name} as a plain number"
+        )
+    return parse(text, name) / eps.value
 
 
 def given(options: argparse.Namespace, *names: str) -> list[str]:
@@ -165,13 +185,11 @@ def contact_of(options: argparse.Namespace) -> Contact | None:
     if options.tabor is not None:
         if present:
             raise InputError(
-                f"tabor = {options.tabor:g} and {present[0]}, limit: not both; give either --tabor or a material"
+                f"tabor = {options.tabor:g} and {present[0]} are given; give either --tabor or a material, not both"
             )
         return None
     if not present:
-        raise InputError(
-            "neither --tabor nor a material, limit: one of them; give --tabor 2, say, or --radius 100nm ..."
-        )
+        raise InputError("neither --tabor nor a material is given; give --tabor 2, say, or --radius 100nm ...")
     inputs = inputs_of(options)
     for name in inputs.deviations:
         why = "limit: a value without a standard deviation, which assess alone takes; leave it out"
@@ -191,7 +209,7 @@ def inputs_of(options: argparse.Namespace, **more: Any) -> Inputs:
     if missing:
         raise InputError(f"{', '.join(missing)} missing, limit: a whole material; give it too")
     if len(laws) == 2:
-        raise InputError(f"{' and '.join(laws)}, limit: not both, as each follows from the other; leave one out")
+        raise InputError(f"{' and '.join(laws)} are given, and each follows from the other; leave one out")
     if law != LENNARD_JONES:
         refuse(options, ("hamaker",), "the 3-9 law, by whose tail it gives the spacing, and --spacing with others")
     named = {

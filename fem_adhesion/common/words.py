@@ -16,7 +16,7 @@ from fem_adhesion.registry import PARTS
 from halfspace.errors import InputError
 
 Length = Callable[[str, str], float]
-"""Takes the name of a length and its text, and gives it in beta."""
+"""Takes the name of a length and its text, and gives it in beta; a length of a law in eps."""
 
 
 def in_beta(name: str, text: str, unit: str = "beta") -> float:
@@ -81,6 +81,8 @@ def _value(name: str, unit: str, text: str, length: Length) -> float | Path:
     try:
         return float(text)
     except ValueError as error:
+        if unit in ("eps", "1/eps") and length is not in_beta:
+            return length(name, text) if unit == "eps" else 1 / length(name, text)
         raise InputError(f"{name} = {text}, limit: a plain number{unit and f', in {unit}'}; give one") from error
 
 

@@ -382,7 +382,7 @@ def test_a_hamaker_constant_in_the_place_of_the_spacing(monkeypatch, capsys):
     assert contacts[0].spacing == pytest.approx(contacts[1].spacing, rel=1e-12)
     assert contacts[1].units.hamaker == pytest.approx(6.5e-20, rel=1e-12)
     assert cli.main([*by_hamaker, "--spacing", "0.3nm"]) == 2
-    assert "--spacing and --hamaker, limit: not both" in capsys.readouterr().err
+    assert "--spacing and --hamaker are given" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("width", [150, 80, 45, 30])

@@ -181,7 +181,7 @@ MATERIAL = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--w
         ([], "--radius, --modulus, --poisson, --work-of-adhesion, --spacing or --hamaker missing"),
         (MATERIAL, "--spacing or --hamaker missing"),
         ([*MATERIAL, "--spacing", "-0.3nm"], "spacing = -0.3nm is outside 0 < spacing < inf"),
-        ([*MATERIAL, "--spacing", "1nm", "--hamaker", "1zJ"], "--spacing and --hamaker, limit: not both"),
+        ([*MATERIAL, "--spacing", "1nm", "--hamaker", "1zJ"], "--spacing and --hamaker are given"),
         ([*MATERIAL, "--spacing", "1nm", "--counter-poisson", "0.3"], "counter_modulus = None"),
         ([*MATERIAL, "--spacing", "1nm", "--tabor", "1"], "unrecognized arguments: --tabor 1"),
         ([*MATERIAL, "--spacing", "1nm", "--json", "a.svg", "--plot", "other/../a.svg"], "is given for two outputs"),

@@ -1,5 +1,6 @@
 """``fem-adhesion curve``: what it prints and writes is what was computed, and nothing is left of what goes wrong."""
 
+import argparse
 import csv
 import io
 import json
@@ -17,6 +18,7 @@ from scenes import pair
 from fem_adhesion import Hemisphere, cli
 from fem_adhesion.common import lines as curve_lines
 from fem_adhesion.common.options import Parser
+from fem_adhesion.common.scene_options import law_of
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.curve import command as curve
 from fem_adhesion.curve import pictures as module
@@ -26,7 +28,8 @@ from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.registry import part_from
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium import devices
-from halfspace.laws import Dlvo, Exponential, Morse
+from halfspace.errors import InputError
+from halfspace.laws import Dlvo, Dugdale, Exponential, Morse
 from halfspace.profiles import Paraboloid, Power, Sphere
 from halfspace.scaling import Units
 from halfspace.values import Estimate
@@ -376,6 +379,28 @@ def test_laws_and_profiles_are_heeded(arguments, part, monkeypatch):
     assert _asked(monkeypatch, "--tabor", 2, *arguments).scene == Scene(2.0, **part)
 
 
+@pytest.mark.parametrize(
+    ("word", "law"),
+    [
+        ("morse:0.1nm", Morse(3)),
+        ("exponential:100pm,9", Exponential(3)),
+        ("dlvo:-0.5,1nm", Dlvo(-0.5, 0.3)),
+        ("dugdale:0.06nm", Dugdale(0.2)),
+        ("morse:3", Morse(3)),
+    ],
+)
+def test_lengths_of_a_law_are_read_in_si_beside_a_spacing(word, law):
+    options = argparse.Namespace(law=word, spacing="0.3nm")
+    found, H = law_of(options), np.array([-0.05, 0.0, 0.3, 3.0])
+    assert type(found) is type(law)
+    np.testing.assert_allclose(found.pressure(H, 1.0), law.pressure(H, 1.0), rtol=1e-12)
+    for spacing, said in ((None, "plain number, in"), ("0.3+-0.1nm", "limit: no deviation")):
+        options.spacing = spacing
+        if "nm" in word or "pm" in word:
+            with pytest.raises(InputError, match=said):
+                law_of(options)
+
+
 @pytest.mark.parametrize("law", [(), MORSE])
 def test_hamaker_constant_and_edge_are_told_by_the_law(law, capsys):
     assert cli.main(["curve", *map(str, MATERIAL), *law, "--rtol", "1e-2"]) == 0
@@ -391,7 +416,7 @@ def test_hamaker_constant_and_edge_are_told_by_the_law(law, capsys):
         (["--tabor", "0"], "tabor = 0 is outside 0 < tabor"),
         (["--tabor", "2", "--radius", "100nm"], "give either --tabor or a material"),
         (["--radius", "100nm", "--modulus", "1GPa"], "--poisson, --work-of-adhesion, --spacing or --hamaker missing"),
-        ([*MATERIAL, "--hamaker", "65zJ"], "--spacing and --hamaker, limit: not both"),
+        ([*MATERIAL, "--hamaker", "65zJ"], "--spacing and --hamaker are given"),
         ([*MATERIAL, "--share", "0.5"], "--share would have no effect, limit: with --tabor"),
         ([*MATERIAL, "--counter", "half-space"], "--counter would have no effect, limit: with --tabor"),
         ([*MATERIAL, "--counter-modulus", "1GPa"], "counter_poisson = None"),

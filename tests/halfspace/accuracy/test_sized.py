@@ -37,7 +37,7 @@ REFUSED = [
     (lambda: Scene(float("nan")), "tabor = nan"),
     (body(poisson=0.5), "poisson = 0.5 is outside 0 <= poisson < 0.5"),
     (body(poisson=-0.1), "poisson = -0.1"),
-    (body(poisson=0.2, material=NeoHookean(0.3)), "limit: one of both"),
+    (body(poisson=0.2, material=NeoHookean(0.3)), "give one of them, not both"),
     (lambda: Scene(1.0, "cube"), "body = 'cube' is no body; take fem_adhesion.Hemisphere"),
     (lambda: Scene(1.0, Path("body.msh")), "is no body"),
     (lambda: Scene(1.0, HEMISPHERE.body, counter="cube", share=0.5), "counter = 'cube' is no body"),
