@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,6 +64,15 @@ def parse(text: str, name: str) -> float:
     if not (0 < value < math.inf or KINDS.get(name, LENGTH)[0] == "1"):
         raise InputError(f"{name} = {text} is outside 0 < {name} < inf; write it as {example}")
     return value
+
+
+def metres_of(table: Path) -> float:
+    """Size in m of the unit of a table of two lengths: 1 unless its first line says, as ``r_nm,z_nm``."""
+    header = table.read_text(encoding="utf-8-sig", errors="replace").partition("\n")[0]
+    found = re.fullmatch(r"\W*\w+_([pnuµm]?m)\s*,\s*\w+_([pnuµm]?m)\s*", header)
+    if found and found[1] != found[2]:
+        raise InputError(f"{table} has {found[1]} and {found[2]} in its header, limit: one unit; convert a column")
+    return parse(f"1{found[1]}", "radius") if found else 1.0
 
 
 class Measured(NamedTuple):

@@ -214,17 +214,22 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
         if unheeded:
             refuse(options, names, why)
     radius = contact.units.radius if contact else math.nan
-    own = getattr(scene.shape, "radius", radius)
+    own, metres = getattr(scene.shape, "radius", radius), 1.0
+    if contact and (table := getattr(scene.shape, "path", None)):
+        from fem_adhesion.common.numbers import metres_of
+
+        metres = metres_of(table)
+        own *= metres
     if contact and abs(own / radius - 1) > USUAL.own:
         from fem_adhesion.common.numbers import engineering
 
         decades = round(math.log10(own / radius))
         remedy = f"give --radius {engineering(own, 'm').replace(' ', '')}"
-        if abs(own / radius * 10.0**-decades - 1) <= USUAL.own:
-            remedy = f"multiply both columns by 1e{-decades:+03d}"
+        if metres == 1 and abs(own / radius * 10.0**-decades - 1) <= USUAL.own:
+            remedy = f"multiply both columns by 1e{-decades:+03d}, or begin it with its unit, as r_nm,z_nm"
         raise InputError(
-            f"radius = {engineering(radius, 'm')} under a tip whose apex has {own:.4g} in its table's unit, limit: the "
-            f"same to {100 * USUAL.own:g} %, the table in m; {remedy}"
+            f"radius = {engineering(radius, 'm')} under a tip whose apex has {own / metres:.4g} in its table's unit, limit: "
+            f"the same to {100 * USUAL.own:g} %, the table in m; {remedy}"
         )
 
 

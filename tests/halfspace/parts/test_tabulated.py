@@ -267,8 +267,14 @@ def test_a_tip_in_another_unit_is_refused_with_the_factor(tmp_path, capsys):
     said = capsys.readouterr().err
     assert f"the table in m; multiply both columns by {factor}" in said
     assert "--radius" not in said
+    by_header = tmp_path / "headed.csv"
+    by_header.write_text("r_nm,z_nm\n" + tip.read_text())
     tip = written(tmp_path / "tip.csv", r / unit * float(factor), r**2 / 40e-9 / unit * float(factor))
-    assert cli.main([*curve, "--profile", f"tabulated:{tip}", "--rtol", "1e-2"]) == 0
+    for table in (tip, by_header):
+        assert cli.main([*curve, "--profile", f"tabulated:{table}", "--rtol", "1e-2"]) == 0
+    by_header.write_text(by_header.read_text().replace("z_nm", "z_um"))
+    assert cli.main([*curve, "--profile", f"tabulated:{by_header}"]) == 2
+    assert "has nm and um in its header, limit: one unit" in capsys.readouterr().err
 
 
 def test_a_tip_that_turns_back_is_refused(tmp_path):
