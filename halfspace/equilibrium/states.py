@@ -148,15 +148,9 @@ class FinestCurve(Valued):
     def errors(self) -> Array:
         """Estimated errors of approach, load, central gap and contact radius at each point, (points, 4).
 
-        No less than between those at the points beside it, in the geometric mean: along the path a change passes
-        through zero, where it tells nothing, and may be all but zero at several points, so that of two on either side
-        the larger counts. Where one grid hands over to the next its last point has the other's beside it as well: it
-        may be the only one in contact. Infinite at a point that another discretisation does not have, nor a state near
-        to it.
+        Infinite at a point that another discretisation does not have, nor a state near to it.
         """
-        own = [np.array([self._errors(s.problem, point) for point in s.points]) for s in self.segments]
-        apart = np.concatenate([_no_less_than_beside(along) for along in own])
-        return np.asarray(np.fmax(apart, _no_less_than_beside(np.concatenate(own))))
+        return np.array([self._errors(s.problem, point) for s in self.segments for point in s.points])
 
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Range of a coordinate on each of its branches, by name."""
@@ -300,21 +294,9 @@ class FinestCurve(Valued):
 PLANE = Condition(APPROACH)  # of a state that meets no condition but lies in a plane across the path
 
 
-def _no_less_than_beside(own: Array) -> Array:
-    """Errors along the path, (points, 4), no less than those beside; at its ends, and a contact's, its own."""
-    padded = np.pad(np.where(np.isfinite(own), own, np.nan), ((2, 2), (0, 0)), mode="edge")
-    before, after = (np.fmax(*(padded[k : k + len(own)] for k in sides)) for sides in ((0, 1), (3, 4)))
-    return np.where(np.isnan(own), own, np.fmax(own, np.sqrt(_known(before, own) * _known(after, own))))
-
-
 def _unbounded(point: Point) -> Array:
     """Errors at a point that another discretisation does not have, (4,)."""
     return np.where(np.isnan(point.observables), np.nan, np.inf)
-
-
-def _known(numbers: Array, otherwise: Array) -> Array:
-    """Numbers, others in the place of those that are nan."""
-    return np.where(np.isnan(numbers), otherwise, numbers)
 
 
 def shift(change: float, rate: float, bend: float) -> float:
