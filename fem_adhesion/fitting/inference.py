@@ -211,6 +211,11 @@ class Problem:
         start: float = getattr(self.start, name)
         return math.log(value / start) if name in SCALES else (value - start) / self._unit(name)
 
+    @property
+    def held(self) -> tuple[str, ...]:
+        """What is known with an error and was not fitted."""
+        return tuple(name for name in self.prior if name not in self.fitted)
+
     def departure(self, name: str, value: float) -> float:
         """Standard errors from what was known to a value; log-normal where the quantity is positive.
 

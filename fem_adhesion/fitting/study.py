@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import chi2, norm
 
 from fem_adhesion.common.numbers import Measured
-from fem_adhesion.fitting.inference import LEVEL, Best, Data, Place, Problem, Run
+from fem_adhesion.fitting.inference import LEVEL, SCALES, Best, Data, Place, Problem, Run
 from fem_adhesion.fitting.measured import APPROACH, BASE, ForceCurve, read
 from fem_adhesion.fitting.model import SOFTEST, THEORIES, Apparatus, Other
 from fem_adhesion.fitting.prepare import Prepared, prepare
@@ -25,6 +25,7 @@ TABORS = np.geomspace(LEAST, SOFTEST, 13)  # from which fits start; three times 
 NEARLY = 1.1  # chi square, in the least of those at fixed Tabor parameters, up to which a free fit starts from there
 SOFT = 20.0  # Tabor parameter from which on fits end in JKR's, wherever they start
 FAR_OFF = 3.0  # times the measured pull-off force that a fit's may be
+STRAYED = 5.0  # standard errors from what was known at which a quantity makes up for a wrong model, and is held
 COARSE = 3  # every third serves the models beside the atlas, which end anywhere
 ATLAS = "atlas"
 UNITS: Mapping[str, str] = {
@@ -233,10 +234,25 @@ def data_of(prepared: Prepared, stiffness: float) -> Data:
     return Data(travel, curve.force, tuple(runs), tuple(places), noise, prepared.correlation, *forms)
 
 
-def best_of(name: str, prepared: Prepared, given: Mapping[str, Measured], other: Other) -> list[Best]:
-    """Best fit of a model, then all others, which start at Tabor parameters; JKR's has no spacing to fit."""
+def best_of(
+    name: str, prepared: Prepared, given: Mapping[str, Measured], other: Other, held: Sequence[str] = ()
+) -> list[Best]:
+    """Best fit of a model, then all others, which start at Tabor parameters; JKR's has no spacing to fit.
+
+    Quantities that stray from what is known are held there: thousands of residuals of a wrong model outweigh it.
+    """
+    found = _fits(name, prepared, given, other, held)
+    problem, apparatus = found[0].problem, found[0].apparatus
+    known = [key for key in problem.prior if key in SCALES]
+    strayed = [key for key in known if abs(problem.departure(key, getattr(apparatus, key))) > STRAYED]
+    return best_of(name, prepared, given, other, (*held, *strayed)) if strayed else found
+
+
+def _fits(
+    name: str, prepared: Prepared, given: Mapping[str, Measured], other: Other, held: Sequence[str]
+) -> list[Best]:
     prior = {key: each for key, each in given.items() if 0 < each.deviation < math.inf}
-    moved = tuple(key for key, each in given.items() if each.deviation > 0)
+    moved = tuple(key for key, each in given.items() if each.deviation > 0 and key not in held)
     nominal = given["stiffness"].value if prepared.curve.deflection_given else None
     data = data_of(prepared, given["stiffness"].value)
     start = {key: each.value for key, each in given.items()}
@@ -307,7 +323,22 @@ def _values(best: Best, others: Sequence[Best]) -> dict[str, Value]:
             ends = best.interval(name, (at - RANGE, at + RANGE), others)
         low, high = (None if end is None else problem.value(name, end) for end in ends)
         found[name] = Value(getattr(best.apparatus, name), low, high, UNITS[name])
+    for name in problem.held:
+        value, relative = problem.prior[name].value, problem.prior[name].deviation / problem.prior[name].value
+        found[name] = Value(value, *_widened(value, value, value, relative), UNITS[name])
+        work = found["work_of_adhesion"]
+        low, high = _widened(work.value, work.low, work.high, relative)
+        found["work_of_adhesion"] = replace(work, low=low, high=high)
     return found
+
+
+def _widened(value: float, low: float | None, high: float | None, relative: float) -> tuple[float | None, float | None]:
+    """Ends of an interval with an independent relative error more, in the logarithm."""
+    ends = (
+        end and value * math.exp(side * math.hypot(math.log(end / value), EXACT * relative))
+        for side, end in ((-1, low), (1, high))
+    )
+    return next(ends), next(ends)
 
 
 def _limits(best: Best) -> tuple[float, float]:

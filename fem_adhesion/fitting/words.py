@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from fem_adhesion.common.numbers import counted, engineering, listed
-from fem_adhesion.fitting.study import ATLAS, Fit, Value
+from fem_adhesion.fitting.study import ATLAS, STRAYED, Fit, Value
+from halfspace.atlas import sphere
 
 LAW = (
     "The intervals are those of a paraboloid on a half-space under the 3-9 law. Data of a Morse law of the same dgamma "
@@ -21,6 +23,7 @@ NAMES |= {"modulus": "E", "stiffness": "the stiffness", "sensitivity": "the sens
 NAMES |= {"compliance": "the compliance in series"}
 CLEAR = 6.0  # difference of the criterion from which one model is clearly preferred: a likelihood ratio of 20
 MISSED = 0.1  # share of the pull-off force by which a fit misses what a curve shows best
+SMALLEST = 2.3  # R/eps over tabor, of spheres of 1.5 beta, the smallest that are known
 DRAWN = 2.0  # standard errors from what was given at which the fit contradicts it
 KNOWN = 0.5  # half width of an interval of the logarithm from which a number counts as settled
 FINER = {"noise of a third": (3.0, 1.0), "ten times as many samples at the jumps": (1.0, 10.0)}
@@ -44,6 +47,8 @@ def warnings(fit: Fit) -> Iterator[str]:
     """What forbids to take the numbers as they stand."""
     yield from _misfit(fit)
     yield from _models(fit)
+    yield from _sphere(fit)
+    yield from _untested(fit)
     yield LAW
     for name, value in fit.values.items():
         if not value.identified:
@@ -72,6 +77,11 @@ def _misfit(fit: Fit) -> Iterator[str]:
             f"The fitted contact pulls off at {engineering(pull_off, 'N')}, the curve at {engineering(data, 'N')}: "
             f"its dgamma is not that of the pull-off."
         )
+    for name in best.problem.held:
+        yield (
+            f"The fit would take {NAMES[name]} more than {STRAYED:g} standard errors from what was given, as that "
+            "makes up for what the model lacks; it was held, and its error is in the interval of dgamma."
+        )
     for name, given in best.problem.prior.items():
         off = abs(best.problem.departure(name, fit.values[name].value))
         if off > DRAWN:
@@ -97,6 +107,35 @@ def _models(fit: Fit) -> Iterator[str]:
                 f"{one.name} fits alike with dgamma = {sized(found, work.unit)}, outside the interval: the curve does "
                 "not tell the two apart, and dgamma is as uncertain as they differ."
             )
+
+
+def _sphere(fit: Fit) -> Iterator[str]:
+    """What dgamma would be of a finite sphere, which no residual shows either, where that is outside the interval."""
+    other, value = fit.best.problem.other, fit.values["work_of_adhesion"]
+    units = other.units(fit.best.apparatus)
+    tabor = float(np.clip(units.tabor, *sphere.TABORS))
+    ratio = float(np.clip(units.radius / units.spacing, max(sphere.RATIOS[0], SMALLEST * tabor), sphere.RATIOS[-1]))
+    share = float(sphere.pull_off(tabor, ratio, min(other.poisson, sphere.POISSON[1])).load_ratio)
+    if not (value.low or 0.0) <= value.value / share <= (value.high or math.inf):
+        yield (
+            f"A whole sphere of R/eps = {units.radius / units.spacing:.3g} pulls off at {share:.3g} of the force of a "
+            f"paraboloid on a half-space, which is fitted: its dgamma is near {sized(value.value / share, value.unit)}."
+        )
+
+
+def _untested(fit: Fit) -> Iterator[str]:
+    """That the modulus is taken on trust, where the curve would hardly tell it, by the curvature."""
+    problem = fit.best.problem
+    if "modulus" in problem.fitted:
+        return
+    start = replace(problem, start=fit.best.apparatus, fitted=(*problem.fitted, "modulus"))
+    jacobian = start.jacobian(np.zeros(len(start.fitted)))
+    half = _half_width(jacobian, len(problem.fitted)) * math.sqrt(fit.best.scale)
+    if half > KNOWN:
+        yield (
+            "The curve does not test the modulus, which it would leave open by a factor of "
+            f"{math.exp(min(half, 7.0)):.2g}: a layer under the surface, or another modulus, changes dgamma and eps and shows in no residual."
+        )
 
 
 def open_end(fit: Fit, name: str, value: Value) -> str:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from fem_adhesion.fitting.model import Apparatus, Other, by_atlas, by_jkr, recor
 from halfspace import Layer
 from halfspace.atlas import curve
 from halfspace.laws.formulas import Morse
+from halfspace.profiles import Sphere
 
 RADIUS, POISSON, WORK = 50e-9, 0.3, 0.05
 FREE = Measured(1.0, math.inf)
@@ -95,6 +97,17 @@ def test_a_wrong_compliance_is_a_misfit():
     assert _holds(freed.values["work_of_adhesion"], WORK)
 
 
+def test_a_wrong_model_does_not_carry_off_a_known_radius():
+    truth = _truth(1.0, 0.3e-9, 0.2, compliance=2.0 / (0.2 * RADIUS * WORK / 0.3e-9))
+    found = _fit(truth, 0.005, sensitivity=1.0, radius=Measured(RADIUS, 0.05 * RADIUS))
+    radius, work = found.values["radius"], found.values["work_of_adhesion"]
+    assert (radius.low, radius.value, radius.high) == pytest.approx(
+        [RADIUS * math.exp(1.96 * 0.05 * i) for i in (-1, 0, 1)], rel=1e-4
+    )
+    assert work.high / work.value >= 0.999 * radius.high / radius.value
+    assert any("take R more than 5 standard errors from" in line for line in words.warnings(found))
+
+
 def test_intervals_are_those_of_minos():
     best = (found := _fit(_truth(1.0, 0.3e-9, 0.05), 0.005)).best
     minuit = Minuit(best.problem, best.x, name=best.problem.fitted)
@@ -118,6 +131,17 @@ def test_data_of_another_contact_do_not_pass_without_a_warning(law, body, misfit
     assert not _holds(value, WORK)
     assert found.misfit or not misfit
     assert any("depends on the law" in line for line in words.warnings(found))
+
+
+def test_what_a_finite_sphere_does_to_dgamma_is_told():
+    path = halfspace.trace(1.0, rtol=1e-3, to_load=7.0, profile=Sphere(20.0)).resampled(300)
+    found = _fit(_truth(1.0, RADIUS / 20, 0.1), 0.002, theory=lambda _: _continued(path.approach, path.load))
+    assert found.values["work_of_adhesion"].high < 0.96 * WORK
+    (told,) = (line for line in words.warnings(found) if line.startswith("A whole sphere"))
+    corrected = float(re.search(r"dgamma is near ([\d.]+) mJ/m\^2", told)[1]) * 1e-3
+    assert corrected == pytest.approx(WORK, rel=0.02)
+    large = _fit(_truth(1.0, 0.1e-9, 0.1), 0.01)
+    assert not any(line.startswith("A whole sphere") for line in words.warnings(large))
 
 
 def _continued(approach, load):
