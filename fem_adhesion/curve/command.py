@@ -47,7 +47,7 @@ def add_options(command: Parser) -> None:
         ("json", "FILE", Path, "write points, events, units and settings"),
         ("csv", "FILE", Path, "write points and events as a table"),
         ("plot", "FILE", Path, "draw curve, profiles and mesh: png, svg or pdf"),
-        ("vtk", "DIR", Path, "write the fields inside the body for ParaView"),
+        ("vtk", "DIR", Path, "write the fields inside the body for ParaView, by finite elements"),
         ("points", "N", int, points),
         ("revolve", "ANGLE", float, "write the solid of revolution too, degrees"),
         ("render", "FILE", Path, "draw the body cut open, with its stress: png"),
@@ -228,8 +228,8 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
         if metres == 1 and abs(own / radius * 10.0**-decades - 1) <= USUAL.own:
             remedy = f"multiply both columns by 1e{-decades:+03d}, or begin it with its unit, as r_nm,z_nm"
         raise InputError(
-            f"radius = {engineering(radius, 'm')} under a tip whose apex has {own / metres:.4g} in its table's unit, limit: "
-            f"the same to {100 * USUAL.own:g} %, the table in m; {remedy}"
+            f"radius = {engineering(radius, 'm')} under a tip whose apex has {own / metres:.4g} in its table's unit, "
+            f"limit: the same to {100 * USUAL.own:g} %, the table in m; {remedy}"
         )
 
 

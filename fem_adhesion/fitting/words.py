@@ -134,7 +134,8 @@ def _untested(fit: Fit) -> Iterator[str]:
     if half > KNOWN:
         yield (
             "The curve does not test the modulus, which it would leave open by a factor of "
-            f"{math.exp(min(half, 7.0)):.2g}: a layer under the surface, or another modulus, changes dgamma and eps and shows in no residual."
+            f"{math.exp(min(half, 7.0)):.2g}: a layer under the surface, or another modulus, changes dgamma and eps "
+            "and shows in no residual."
         )
 
 
