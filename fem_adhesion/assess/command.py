@@ -4,22 +4,29 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside
-from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, inputs_of, refuse
+from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, add_profile, inputs_of, profile_of, refuse
+from halfspace.errors import InputError
 
 if TYPE_CHECKING:
-    from fem_adhesion.common.contact import Inputs
+    from fem_adhesion.common.contact import Contact, Inputs
 
 
 def add_options(command: Parser) -> None:
     """Add the options."""
     add_contact(command, in_si_only=True)
     add_law(command.add_argument_group("law"))
-    grip = "how spheres are held at their mid-planes; sliding unless given"
+    shape = command.add_argument_group("shape of the tip, where it is no sphere")
+    add_profile(shape, "a sphere's unless given; a table begins with its unit, as r_nm,z_nm, or is in m")
+    mesh = "mesh of the elastic body, in radii of its pole, before a rigid wall; see meshes/README.md"
+    shape.add_argument("--mesh", type=Path, help=mesh, metavar="FILE")
+    grip = "how spheres are held at their mid-planes, or a mesh is held; sliding unless given"
     command.add_argument("--grip", choices=("sliding", "bonded"), help=grip)
     sample = command.add_argument_group("thin sample on a rigid base")
     thickness = "thickness, as 500nm: the sphere is rigid then, and --modulus and --poisson are the sample's"
@@ -67,8 +74,14 @@ def _inputs(options: argparse.Namespace) -> Inputs:
         refuse(options, ("foundation",), "with --thickness")
     else:
         refuse(options, ("grip", *COUNTER), "without --thickness, as a thin sample meets a rigid sphere")
-    inputs = inputs_of(options, grip=options.grip or "sliding", foundation=options.foundation or "bonded")
+    if options.profile is not None:
+        refuse(options, ("grip",), "without --profile, which lies on a half-space")
+    made = {"grip": options.grip or "sliding", "foundation": options.foundation or "bonded", "mesh": options.mesh}
+    inputs = inputs_of(options, **made)
+    if options.profile is not None:
+        inputs = replace(inputs, profile=partial(profile_of, options.profile))
     contact = inputs.contact()
+    _require_exact(inputs, contact)
     require_known(contact)
     tabor = contact.units.tabor
     if tabor > USUAL.finite:
@@ -76,6 +89,20 @@ def _inputs(options: argparse.Namespace) -> Inputs:
             options, ("grip",), f"tabor <= {USUAL.finite:g}, where a finite sphere is solved, and this is {tabor:.4g}"
         )
     return inputs
+
+
+def _require_exact(inputs: Inputs, contact: Contact) -> None:
+    """Refuse standard deviations that a shape leaves without an answer."""
+    from halfspace.profiles import Tabulated
+
+    for name in inputs.deviations:
+        why = ""
+        if contact.mesh:
+            why = "with --mesh, which is solved once"
+        elif name == "radius" and isinstance(contact.profile, Tabulated):
+            why = "with a tip's table, which has the radius in it"
+        if why:
+            raise InputError(f"{name} has a standard deviation, limit: none {why}; leave it out")
 
 
 COMMAND = Command(

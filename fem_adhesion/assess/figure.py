@@ -74,9 +74,9 @@ def draw(assessment: Assessment) -> Figure:
 
 def _frame(assessment: Assessment) -> tuple[Ends, Ends]:
     """Separations in m and forces in N that are shown: from a little compression to beyond the jump on."""
-    units, values = assessment.contact.units, assessment.half_space.values
+    units, values = assessment.contact.units, assessment.best.values
     force, jump = values["pull_off_force"].value, values.get("jump_on_separation")
-    approach, load = _line(assessment.half_space, assessment)
+    approach, load = _line(assessment.best, assessment)
     near = 1 - float(np.nanmax(approach[load * units.load < USUAL.higher * force]))
     parted = 1 - float(np.nanmin(approach[load * units.load < -0.3 * force]))  # the neck may be long
     far = USUAL.wider * max(jump.value / units.approach if jump else 6.0, parted)
@@ -105,8 +105,8 @@ def _line(model: Prediction, assessment: Assessment) -> tuple[Array, Array]:
 
 
 def _jumps(assessment: Assessment) -> Iterator[tuple[Ends, Ends]]:
-    """Take-off and landing, in approach and load, of the half-space's two jumps."""
-    stiffness, curve = assessment.contact.reduced_stiffness, assessment.half_space.curve
+    """Take-off and landing, in approach and load, of the two jumps of the model to trust."""
+    stiffness, curve = assessment.contact.reduced_stiffness, assessment.best.curve
     pairs: list[Any] = []
     if isinstance(curve, EquilibriumPath):
         computed = cycle(curve, stiffness)

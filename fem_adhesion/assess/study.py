@@ -26,7 +26,7 @@ from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.spread import Spreads, spreads
 from fem_adhesion.assess.theories import bradley, dmt_maugis, jkr, maugis_dugdale
 from fem_adhesion.assess.thin_sample import ThinSample, enough, hertz_until, indentations
-from fem_adhesion.bodies.held import Hemisphere
+from fem_adhesion.bodies.held import Hemisphere, Meshed
 from fem_adhesion.common.contact import Contact, Inputs
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene
@@ -38,6 +38,7 @@ from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
 
 HALF_SPACE, PROFILE, FINITE, PAIR = "half-space", "true profile", "finite sphere", "finite pair"
+GIVEN, MESH = "given profile", "mesh"
 Answer = TypeVar("Answer")
 THEORIES = {"JKR": jkr, "Maugis-Dugdale": maugis_dugdale, "DMT-M": dmt_maugis, "rigid": bradley}
 PARAMETERS = {
@@ -54,11 +55,12 @@ class Assessment:
     """What is known of a contact.
 
     `half_space` is the paraboloid on the half-space, computed, or a closed theory where that is as good; `profile` the
-    true profile of sphere or spheres on it; `finite` the elastic hemisphere held at its mid-plane, with its counter-
-    body if that is more than a rigid wall, or the thin sample under the true profile. The deviations are those of the
-    last from the first, by cause; distances are those of every other model from the best one, the nearest first;
-    cautions say what is left out of account, the verdict which model to trust, `sample` what there is to say of a thin
-    one beside that, and `spreads` what the standard deviations of the inputs leave of the numbers.
+    true profile of sphere or spheres on it; `finite` the contact as it is: the elastic hemisphere held at its mid-
+    plane, with its counter-body if that is more than a rigid wall, the mesh in its place, a given profile on the
+    half-space, or the thin sample under the true or the given profile. The deviations are those of the last from the
+    first, by cause; distances are those of every other model from the best one, the nearest first; cautions say what is
+    left out of account, the verdict which model to trust, `sample` what there is to say of a thin one beside that, and
+    `spreads` what the standard deviations of the inputs leave of the numbers.
     """
 
     contact: Contact
@@ -76,6 +78,11 @@ class Assessment:
     spreads: Spreads | None = None
 
     @property
+    def best(self) -> Prediction:
+        """What leaves out least."""
+        return self.finite or self.half_space
+
+    @property
     def models(self) -> tuple[Prediction, ...]:
         """All predictions, the half-space first."""
         ours = (self.half_space, self.profile, self.finite)
@@ -89,7 +96,7 @@ class Assessment:
 
 
 def assess(contact: Contact, progress: Progress = unheard, inputs: Inputs | None = None) -> Assessment:
-    """Assess a contact, or raise NotConverged if the half-space's curve cannot be traced.
+    """Assess a contact, or raise NotConverged if the half-space's curve or that of a given shape cannot be traced.
 
     Given the inputs that it was made of, find what their standard deviations make of the numbers.
     """
@@ -107,13 +114,14 @@ def assess(contact: Contact, progress: Progress = unheard, inputs: Inputs | None
         if within or make is not maugis_dugdale
     )
     begin("sphere's profile")
-    profile, reason = _tried(PROFILE, _profile, contact)
-    body = ON_LAYER if contact.layer else PAIR if contact.pair else FINITE
+    profile, reason = _tried(PROFILE, _profile, contact) if contact.layer or not contact.shape else (None, None)
+    body = _body(contact)
     begin(body)
-    finite, why_not = _tried(body, _finite, contact)
+    # Nothing stands in for a shape that cannot be solved.
+    finite, why_not = (_finite(contact), None) if contact.shape else _tried(body, _finite, contact)
     if contact.layer:
         begin("thickness that is enough")
-    doubts = tuple(verdict.cautions(contact, half_space))
+    doubts = tuple(verdict.cautions(contact, (contact.shape and finite) or half_space))
     sample, unknown = _tried("thickness that is enough", partial(_thin_sample, half_space=half_space), contact)
     found, unspread = None, None
     if uncertain:
@@ -131,7 +139,7 @@ def assess(contact: Contact, progress: Progress = unheard, inputs: Inputs | None
         tuple(verdict.deviations(half_space, by_profile, finite, contact.spacing)),
         distances,
         verdict.regime(tabor),
-        (*doubts, *verdict.yielding(contact), *filter(None, (reason, why_not, unknown, unspread, *warnings))),
+        (*doubts, *verdict.left_out(contact), *filter(None, (reason, why_not, unknown, unspread, *warnings))),
         tuple(verdict.verdict(finite or half_space, distances, computed=finite is not None, doubts=doubts)),
         time.perf_counter() - began,
         sample,
@@ -140,23 +148,35 @@ def assess(contact: Contact, progress: Progress = unheard, inputs: Inputs | None
 
 
 def _spreads(inputs: Inputs) -> Spreads:
-    """What the standard deviations of inputs make of the half-space's numbers, or of the thin sample's."""
+    """What the standard deviations of inputs make of the half-space's numbers, or of those of a sample or a profile."""
+    contact = inputs.contact()
+    other = contact.layer or contact.profile
 
     def values(contact: Contact) -> Mapping[str, Quantity]:
-        return (_finite if contact.layer else _half_space)(contact).values
+        return (_finite if other else _half_space)(contact).values
 
     def drawn(contacts: Sequence[Contact]) -> list[dict[str, Quantity]]:
-        if not all(contact.layer is None and _in_atlas(contact) for contact in contacts):
+        if other or not all(map(_in_atlas, contacts)):
             return []
         units, stiffnesses = [c.units for c in contacts], [c.reduced_stiffness for c in contacts]
         return list(read_atlas([one.tabor for one in units], stiffnesses, units, USUAL.drawn))
 
-    return spreads(ON_LAYER if inputs.contact().layer else HALF_SPACE, inputs, values, drawn)
+    return spreads(_body(contact) if other else HALF_SPACE, inputs, values, drawn)
 
 
 def require_known(contact: Contact) -> None:
-    """Refuse a law at a Tabor parameter at which a closed theory, known for the 3-9 law, is as good; InputError."""
+    """Refuse a law at a Tabor parameter at which a closed theory, known for the 3-9 law, is as good; InputError.
+
+    Refuse a profile there, too, for which there is no closed theory, and a mesh where it is not solved.
+    """
     tabor = contact.units.tabor
+    for name, given, least, most, why in (
+        ("profile", contact.profile, USUAL.rigid, USUAL.computed, "as no closed theory has it"),
+        ("mesh", contact.mesh, 0.0, USUAL.finite, "as finite elements take long beyond"),
+    ):
+        if given is not None and not least <= tabor <= most:
+            limit = f"{least:g} <= tabor <= {most:g} with --{name}"
+            raise InputError(f"tabor = {tabor:.4g}, limit: {limit}, {why}; take fem-adhesion curve for it")
     if contact.law != LENNARD_JONES and not USUAL.rigid <= tabor <= USUAL.computed:
         limit = f"{USUAL.rigid:g} <= tabor <= {USUAL.computed:g} with --law"
         raise InputError(f"tabor = {tabor:.4g}, limit: {limit}; leave it out, as all laws have the same limits there")
@@ -191,8 +211,17 @@ def _tried(name: str, make: Callable[[Contact], Answer], contact: Contact) -> tu
     return (None, f"{name} not solved: {answer.reason}") if isinstance(answer, Unsolved) else (answer, None)
 
 
+def _body(contact: Contact) -> str:
+    """Name of the model of the contact as it is."""
+    if contact.layer:
+        return ON_LAYER
+    return GIVEN if contact.profile else MESH if contact.mesh else PAIR if contact.pair else FINITE
+
+
 def _profile(contact: Contact) -> Prediction:
-    """The true profile of sphere or spheres on the half-space."""
+    """The true profile of sphere or spheres on the half-space, or the one that is given."""
+    if contact.profile:
+        return _traced(GIVEN, contact, profile=contact.profile)
     units, larger = contact.units, contact.larger_radius
     known = USUAL.rigid <= units.tabor <= USUAL.computed
     if not known and math.isfinite(larger):
@@ -204,24 +233,25 @@ def _profile(contact: Contact) -> Prediction:
 
 
 def _finite(contact: Contact) -> Prediction:
-    """The elastic hemisphere held at its mid-plane, against a rigid wall or its counter-body; or the thin sample."""
+    """The elastic hemisphere held at its mid-plane, against a rigid wall or its counter-body.
+
+    Or the mesh in its place, the profile that is given, or the thin sample.
+    """
     units = contact.units
     if contact.layer:
-        return _on_layer(contact, contact.layer, Sphere(units.radius_ratio))
+        return _on_layer(contact, contact.layer, contact.profile or Sphere(units.radius_ratio))
+    if contact.profile:
+        return _profile(contact)
     if units.tabor > USUAL.finite:
         raise InputError(
             f"tabor = {units.tabor:.4g} is outside tabor <= {USUAL.finite:g}, beyond which it takes long; "
             "take fem-adhesion curve --body hemisphere"
         )
-    scene = Scene(
-        tabor=units.tabor,
-        law=contact.law,
-        body=Hemisphere(radius_ratio=contact.smaller_ratio, grip=contact.grip, poisson=contact.smaller_poisson),
-        counter=contact.counter,
-        share=contact.share,
-    )
+    made = partial(Meshed, contact.mesh) if contact.mesh else Hemisphere
+    body = made(radius_ratio=contact.smaller_ratio, grip=contact.grip, poisson=contact.smaller_poisson)
+    scene = Scene(units.tabor, body, law=contact.law, counter=contact.counter, share=contact.share)
     path = convergence.trace(scene, rtol=USUAL.finite_rtol, to_load=USUAL.to_load)
-    return computed(PAIR if contact.pair else FINITE, path, contact.reduced_stiffness, units)
+    return computed(_body(contact), path, contact.reduced_stiffness, units)
 
 
 def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = USUAL.finite_rtol) -> Prediction:
@@ -234,8 +264,8 @@ def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = U
 
 
 def _thin_sample(contact: Contact, half_space: Prediction) -> ThinSample | None:
-    """Where the half-space and the series serve in the place of the thin sample; None of a thick one."""
-    if contact.thickness is None:
+    """Where the half-space and the series serve in the place of the thin sample; None of others and under a profile."""
+    if contact.thickness is None or contact.profile:
         return None
     on_layer = partial(_on_layer, contact, profile=PARABOLOID, rtol=USUAL.searched)
     return ThinSample(

@@ -64,7 +64,7 @@ def report(assessment: Assessment, digits: int = SHOWN) -> RenderableType:
 
 def _answer(assessment: Assessment) -> Iterator[RenderableType]:
     """Which model to trust, its main numbers, why, and what is left out of account."""
-    best = assessment.finite or assessment.half_space
+    best = assessment.best
     yield Prose(assessment.verdict[-1], "bold")
     for name in ANSWER:
         if quantity := best.values.get(name):
@@ -164,11 +164,7 @@ def _legend(assessment: Assessment, digits: int) -> Iterator[str]:
     yield "DMT-M: DMT's theory in Maugis's form. Rigid: Bradley's."
     if assessment.half_space.model == ATTRACTING:
         yield f"{ATTRACTING}: JKR's theory in contact, and before it the attraction at a distance."
-    if assessment.finite and assessment.contact.layer:
-        yield "Thin sample: under a rigid sphere; the half-space is as thick as can be."
-    elif assessment.finite:
-        named = assessment.finite.model.capitalize()
-        yield f"{named}: what is round is an elastic hemisphere held at its mid-plane, {assessment.contact.grip}."
+    yield from _told_as_it_is(assessment)
     brackets = "In brackets: error of the last digit, for closed theories that of the reading only."
     fewer = f"{digits} digits, or as many as are certain; --digits all shows more and the errors."
     yield f"{brackets if digits > SHOWN else fewer} -: not in the model."
@@ -177,6 +173,20 @@ def _legend(assessment: Assessment, digits: int) -> Iterator[str]:
             "Differences of a separation or base position are in % of the spacing and the distance between both jumps, "
             "others in % of the value."
         )
+
+
+def _told_as_it_is(assessment: Assessment) -> Iterator[str]:
+    """What the model of the contact as it is stands for, if that was solved."""
+    contact, finite = assessment.contact, assessment.finite
+    if finite and contact.layer:
+        yield f"Thin sample: under a rigid tip, {contact.shape or 'sphere'}; the half-space is as thick as can be."
+    elif finite and contact.profile:
+        yield f"Given profile: {contact.shape}, on the half-space."
+    elif finite:
+        body = "what is round is an elastic hemisphere held at its mid-plane"
+        if contact.mesh:
+            body = "the elastic body of the file, held at its grip"
+        yield f"{finite.model.capitalize()}: {body}, {contact.grip}."
 
 
 def contact_radius(assessment: Assessment) -> str:
@@ -235,10 +245,11 @@ def _deviations(assessment: Assessment, digits: int) -> Iterator[RenderableType]
     if not known:
         return
     body = "thickness" if assessment.contact.layer else "finite body"
+    both = any(d.profile for d in known)
     causes = (
-        ("true profile", [d.profile for d in known]),
+        (assessment.profile.model if assessment.profile else "", [d.profile for d in known]),
         (body, [d.body for d in known]),
-        ("both", [d.total for d in known]),
+        ("both" if both else assessment.best.model, [d.total for d in known]),
     )
     columns = [_percents(*cause, digits) for cause in causes if any(cause[1])]
     title = f"difference from the {assessment.half_space.model}, in % of it, by cause"
@@ -300,7 +311,10 @@ def record(assessment: Assessment) -> dict[str, object]:
     """Everything as plain data for JSON: a quantity is a value, an error and a unit in SI; see `UNITS` for others."""
     contact = assessment.contact
     found = {
-        "input": {**asdict(contact), "law": record_of(contact.law)},
+        "input": {
+            **asdict(contact),
+            **{part: record_of(getattr(contact, part)) for part in ("law", "profile", "mesh")},
+        },
         "thickness_in_beta": contact.layer.thickness if contact.layer else None,
         "equivalent_radius": contact.units.radius,
         "contact_modulus": contact.units.modulus,

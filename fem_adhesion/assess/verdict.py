@@ -108,8 +108,10 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
             yield f"{what} is {value:.2g}, limit {limit:g}: {meaning}"
 
 
-def yielding(contact: Contact) -> Iterator[str]:
-    """What the yield of the attracted layer, which no surface law has, does to the adhesion, where that is known."""
+def left_out(contact: Contact) -> Iterator[str]:
+    """What theories of a paraboloid leave out, and surface laws: that the attracted surface stretches."""
+    if contact.shape:
+        yield f"the half-space and the closed theories assume a paraboloid, and the tip is given as {contact.shape}"
     part = _yield(contact)
     if USUAL.faint <= part <= USUAL.first_order:
         adhesion = contact.units.work_of_adhesion * (1 + part)
@@ -122,7 +124,7 @@ def yielding(contact: Contact) -> Iterator[str]:
 def _yield(contact: Contact) -> float:
     """First order of the part by which the yield of the attracted layer deepens one sphere's work of adhesion."""
     units = contact.units
-    if contact.pair or contact.layer:
+    if contact.pair or contact.layer or contact.profile:
         return 0.0
     return yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson, contact.law) - 1
 
@@ -140,7 +142,7 @@ def verdict(
 ) -> Iterator[str]:
     """Sentences on which model to trust; none as it is where there are doubts, cautions that pass a limit.
 
-    The distances, from `ranked`, are from the best one; `computed` says whether that is of the finite bodies.
+    The distances, from `ranked`, are from the best one; `computed` says whether that is of the bodies as they are.
     """
     for distance in distances:
         judged = f"{distance.model} has none of its quantities"

@@ -6,20 +6,23 @@ What is asked of a material is asked of it only, and never guessed: Poisson's ra
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_adhesion.bodies.body import Body, GripName
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.bodies.held import Hemisphere
+from fem_adhesion.registry import words_of
 from fem_adhesion.scene import facing_pair
 from halfspace.elastic.layers import Foundation, Layer, Layers
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import LAYER_THICKNESS, require_poisson
+from halfspace.profiles import Profile, require_profile
 from halfspace.scaling import Units, contact_modulus, equivalent_radius, spacing_of
 
 if TYPE_CHECKING:
@@ -37,9 +40,10 @@ class Contact:
     of its modulus and Poisson's ratio are given, and flat unless its radius is. The stiffness is that of the cantilever
     in N/m, infinite for fixed grips; the grip is how spheres are held at their mid-planes. With a thickness in m it is
     a rigid sphere on a thin sample, whose are `modulus` and `poisson` then, and the foundation how that stands on its
-    rigid base; it is thicker than the spacing.
+    rigid base; it is thicker than the spacing. The profile, in the units of the contact, is the undeformed gap where
+    that is not a sphere's, and a mesh the file of the body, see `fem_adhesion.Meshed`, before a rigid wall.
 
-    InputError if a value is out of range, one of the other body's two is missing, or there is one beside a thin sample.
+    InputError if a value is out of range, one of the other body's two is missing, or parts do not go together.
     """
 
     radius: float
@@ -55,6 +59,8 @@ class Contact:
     law: Law = LENNARD_JONES
     thickness: float | None = None
     foundation: Foundation = "bonded"
+    profile: Profile | None = None
+    mesh: Path | None = None
 
     def __post_init__(self) -> None:
         require_poisson(self.poisson)
@@ -72,6 +78,15 @@ class Contact:
                 f"thickness = {self.thickness:g} m with another elastic or round body, limit: a rigid sphere on a "
                 "thin sample; leave out the counter-body"
             )
+        if self.profile is not None:
+            require_profile(self.profile)
+        for name, other, what in (
+            ("profile", math.isfinite(self.counter_radius), "another round body; a profile is the whole gap"),
+            ("profile", self.mesh, "a mesh, which has its own surface; give one of both"),
+            ("mesh", self.pair or self.thickness, "another body or a thin sample; a mesh meets a rigid wall"),
+        ):
+            if other and getattr(self, name) is not None:
+                raise InputError(f"{name} = {getattr(self, name)} does not go with {what}")
         self.units, self.layer  # noqa: B018  they refuse what is not positive
         if self.thickness is not None:
             self.require_sample(self.thickness)
@@ -109,6 +124,11 @@ class Contact:
     def reduced_stiffness(self) -> float:
         """Stiffness of the cantilever in R dgamma/eps."""
         return self.stiffness / self.units.stiffness
+
+    @property
+    def shape(self) -> str:
+        """What is given of the tip's shape, in words; nothing of a sphere."""
+        return f"mesh {self.mesh}" if self.mesh else words_of(self.profile) if self.profile else ""
 
     @property
     def pair(self) -> bool:
@@ -163,19 +183,23 @@ class Contact:
 class Inputs:
     """What a contact is made of: its quantities as they were measured, by the names of `Contact`, and its other parts.
 
+    The profile is made for the contact that it is given, as its lengths are known in SI.
+
     A Hamaker constant in J, ``hamaker``, may take the place of the spacing, which then follows from it and the work of
     adhesion.
     """
 
     quantities: Mapping[str, Measured]
     parts: Mapping[str, Any]
+    profile: Callable[[Contact], Profile] | None = None
 
     def contact(self, **changed: float) -> Contact:
         """Contact of the values, some of them changed; InputError as of `Contact`."""
         values: dict[str, Any] = {name: given.value for name, given in self.quantities.items()} | changed
         if "hamaker" in values:
             values["spacing"] = spacing_of(values.pop("hamaker"), values["work_of_adhesion"])
-        return Contact(**values, **self.parts)
+        contact = Contact(**values, **self.parts)
+        return replace(contact, profile=self.profile(contact)) if self.profile else contact
 
     @property
     def deviations(self) -> dict[str, float]:

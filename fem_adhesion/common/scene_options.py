@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from fem_adhesion.common.options import Parser
     from fem_adhesion.scene import Scene
     from halfspace.laws import Law
+    from halfspace.profiles import Profile, Tabulated
 
     Group = argparse._ArgumentGroup
 
@@ -30,6 +31,7 @@ MATERIAL = ("radius", "modulus", "poisson", "work_of_adhesion")
 LAW = ("spacing", "hamaker")  # one of both
 COUNTER = ("counter_modulus", "counter_poisson", "counter_radius")
 SI_ONLY = ("radius", "modulus", "work_of_adhesion", *LAW, "counter_modulus", "counter_radius")
+APEX = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
 MATERIALS = {"small": "linear-elastic", "finite": "neo-hookean"}  # by the strain
 
 
@@ -67,8 +69,7 @@ def add_body(body: Group) -> None:
     size = "R/eps, as other sizes, is left out with a material; lengths in beta, with a material as 500nm"
     elastic = f"what is elastic, half-space unless given: {_words('body')}; {size}"
     body.add_argument("--body", help=elastic, metavar="BODY")
-    own = "undeformed gap; the body's own unless given, of a half-space a paraboloid"
-    body.add_argument("--profile", help=f"{own}: {_words('profile')}", metavar="PROFILE")
+    add_profile(body, "the body's own unless given, of a half-space a paraboloid")
     add_law(body)
     counter = "with --tabor: a larger body in the place of the rigid wall: hemisphere:radius_ratio or half-space"
     body.add_argument("--counter", help=counter, metavar="BODY")
@@ -77,6 +78,11 @@ def add_body(body: Group) -> None:
     counted = "what the surface law is counted per; projected unless given, at finite strain with matter conserved"
     tractions = ("projected", "surface", "reference", "normal", "vertical")
     body.add_argument("--traction", choices=tractions, help=counted)
+
+
+def add_profile(group: Group, unless: str) -> None:
+    """Add the option of the profile."""
+    group.add_argument("--profile", help=f"undeformed gap; {unless}: {_words('profile')}", metavar="PROFILE")
 
 
 def add_law(group: Group) -> None:
@@ -97,22 +103,53 @@ def scene_of(options: argparse.Namespace, tabor: float, contact: Contact | None 
     has_size = named is not None and "radius_ratio" in named.parameters  # a length of its own
     pair = contact if contact and contact.pair and has_size else None
     length: Length = in_beta
-    poisson, size, of_profile = options.poisson, dict[str, Any](), dict[str, Any]()
+    poisson, size = options.poisson, dict[str, Any]()
     if contact:
         remedy = "with a material give --counter-modulus or --counter-radius"
         refuse(options, ("counter", "share"), f"with --tabor; {remedy}")
         poisson, length = pair.smaller_poisson if pair else contact.poisson, _in_si(contact)
         size = {"radius_ratio": pair.smaller_ratio if pair else contact.units.radius_ratio}
-        of_profile = {"radius_ratio": contact.units.radius_ratio, "counter_radius": contact.larger_radius}
     material = _material(options, poisson)
     body = part_in("body", options.body or "half-space", length, size, poisson=poisson, **material)
     profile = None
     if options.profile and (options.profile != name_of(body.shape) or body.file):
-        profile = part_in("profile", options.profile, length, of_profile)
+        profile = profile_of(options.profile, contact)
     counter, share = _counter(options), options.share
     if pair:
         counter, share = replace(pair, grip=getattr(body, "grip", "sliding")).counter, pair.share
     return Scene(tabor, body, profile, law_of(options), counter, share)
+
+
+def profile_of(word: str, contact: Contact | None) -> Profile:
+    """Profile of a word; with a material its lengths are in SI, and a tip's table has its radius, or InputError."""
+    from halfspace.profiles import Tabulated
+
+    length: Length = in_beta
+    size = dict[str, Any]()
+    if contact:
+        length = _in_si(contact)
+        size = {"radius_ratio": contact.units.radius_ratio, "counter_radius": contact.larger_radius}
+    profile: Profile = part_in("profile", word, length, size)
+    if contact and isinstance(profile, Tabulated):
+        _require_apex(profile, contact.units.radius)
+    return profile
+
+
+def _require_apex(tip: Tabulated, radius: float) -> None:
+    """Refuse a radius in m that is not that of the tip's apex."""
+    from fem_adhesion.common.numbers import engineering, metres_of
+
+    metres = metres_of(tip.path)
+    own = tip.radius * metres
+    if abs(own / radius - 1) > APEX:
+        decades = round(math.log10(own / radius))
+        remedy = f"give --radius {engineering(own, 'm').replace(' ', '')}"
+        if metres == 1 and abs(own / radius * 10.0**-decades - 1) <= APEX:
+            remedy = f"multiply both columns by 1e{-decades:+03d}, or begin it with its unit, as r_nm,z_nm"
+        raise InputError(
+            f"radius = {engineering(radius, 'm')} under a tip whose apex has {tip.radius:.4g} in its table's unit, "
+            f"limit: the same to {100 * APEX:g} %, the table in m; {remedy}"
+        )
 
 
 def _in_si(contact: Contact) -> Length:

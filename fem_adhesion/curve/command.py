@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
@@ -197,7 +196,7 @@ def _require_inside(options: argparse.Namespace, scene: Scene, solver: SolverNam
 
 
 def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverName, contact: Contact | None) -> None:
-    """Refuse what the question would not depend on, and a radius that is not that of a profile known in SI."""
+    """Refuse what the question would not depend on."""
     files = options.json or options.csv or options.plot or options.vtk
     in_tabor = solver == "half-space" and not contact and not scene.body.layered
     for unheeded, names, why in (
@@ -213,24 +212,6 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
     ):
         if unheeded:
             refuse(options, names, why)
-    radius = contact.units.radius if contact else math.nan
-    own, metres = getattr(scene.shape, "radius", radius), 1.0
-    if contact and (table := getattr(scene.shape, "path", None)):
-        from fem_adhesion.common.numbers import metres_of
-
-        metres = metres_of(table)
-        own *= metres
-    if contact and abs(own / radius - 1) > USUAL.own:
-        from fem_adhesion.common.numbers import engineering
-
-        decades = round(math.log10(own / radius))
-        remedy = f"give --radius {engineering(own, 'm').replace(' ', '')}"
-        if metres == 1 and abs(own / radius * 10.0**-decades - 1) <= USUAL.own:
-            remedy = f"multiply both columns by 1e{-decades:+03d}, or begin it with its unit, as r_nm,z_nm"
-        raise InputError(
-            f"radius = {engineering(radius, 'm')} under a tip whose apex has {own / metres:.4g} in its table's unit, "
-            f"limit: the same to {100 * USUAL.own:g} %, the table in m; {remedy}"
-        )
 
 
 COMMAND = Command(

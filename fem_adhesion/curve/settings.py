@@ -11,7 +11,6 @@ class Settings:
 
     # What is asked
     inside: int = 20  # points of a curve for ParaView
-    own: float = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
 
     # Stress as numbers
     along: int = 101  # points of a line, closer near the pole

@@ -20,7 +20,7 @@ from fem_adhesion.assess import theories as assess_theories
 from fem_adhesion.assess.predictions import QUANTITIES, WORDS, Prediction, Quantity, computed, large_tabor
 from fem_adhesion.assess.study import assess
 from fem_adhesion.assess.terminal import contact_radius, record, report
-from fem_adhesion.assess.verdict import Distance, cautions, ranked, regime, verdict, yielding
+from fem_adhesion.assess.verdict import Distance, cautions, left_out, ranked, regime, verdict
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.numbers import DIGITS, KINDS, PREFIXES, engineering, exponent_of, parse, with_error
 from fem_adhesion.scene import Scene
@@ -590,7 +590,7 @@ def test_yield_is_corrected_from_a_thousandth_to_a_tenth(modulus, told):
     contact = Contact(**(SILICA | {"modulus": modulus}))
     mu, ratio = contact.units.tabor, contact.units.radius_ratio
     part = 0.273797 * mu * np.sqrt(mu / ratio) * (1 - 2 * 0.17) / (1 - 0.17) ** 2
-    lines = list(yielding(contact))
+    lines = list(left_out(contact))
     assert (1e-3 <= part <= 0.1) == told == bool(lines)
     work = 0.1 * (1 + part)
     assert all(f"by {100 * part:.3g} %, to {work:.4g} J/m^2; give" in line for line in lines)
@@ -633,8 +633,8 @@ def test_a_sample_is_thicker_than_the_spacing(thickness):
 
 
 def test_the_yield_by_another_law_is_told_with_its_premise(silica):
-    (line,) = yielding(replace(silica.contact, law=Morse(3)))
-    (usual,) = yielding(silica.contact)
+    (line,) = left_out(replace(silica.contact, law=Morse(3)))
+    (usual,) = left_out(silica.contact)
     parts = [float(re.search(r"adhesion by (\S+) %", said)[1]) for said in (line, usual)]
     assert parts[0] / parts[1] == pytest.approx(1.0 / (2 * 0.273797), rel=5e-3)
     assert "J/m^2, if the law attracts matter and not charges on the surfaces; give that to include it" in line
@@ -776,12 +776,11 @@ def test_the_axes_of_the_figure_are_in_the_units_that_they_name(bead):
     assert arrow.xyann[0] * metres == pytest.approx(on, rel=1e-3)
 
 
-def test_the_arrows_of_the_figure_are_the_two_jumps(axes, silica):
+def test_the_arrows_are_the_jumps_of_the_model_to_trust(axes, silica):
     arrows, notes = ([t for t in axes.texts if bool(t.arrow_patch) is drawn] for drawn in (True, False))
-    on = silica.half_space.values["jump_on_separation"].value * 1e9
-    off = silica.half_space.values["jump_off_separation"].value * 1e9
+    on, off = (silica.finite.values[f"jump_{way}_separation"].value * 1e9 for way in ("on", "off"))
     assert [arrow.xyann[0] for arrow in arrows] == pytest.approx([on, off])
-    jump_off = cycle(halfspace.trace(silica.contact.units.tabor), silica.contact.reduced_stiffness).jump_off
+    jump_off = cycle(silica.finite.curve, silica.contact.reduced_stiffness).jump_off
     assert arrows[1].xyann[1] == pytest.approx(jump_off.take_off.load * silica.contact.units.load * 1e9, rel=1e-6)
     (note,) = notes  # it lands far beyond the frame
     lands = (1 - jump_off.landing.approach) * silica.contact.units.approach * 1e9

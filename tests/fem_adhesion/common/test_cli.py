@@ -162,7 +162,18 @@ def test_a_contact_has_the_same_options_in_every_command(capsys):
     contact = {"--radius", "--modulus", "--poisson", "--work-of-adhesion", "--spacing", "--hamaker"}
     contact |= {"--counter-modulus", "--counter-poisson", "--counter-radius", "--stiffness"}
     assert contact <= set(curve)
-    own = {"--law", "--help", "--digits", "--json", "--plot", "--grip", "--thickness", "--foundation"}
+    own = {
+        "--law",
+        "--help",
+        "--digits",
+        "--json",
+        "--plot",
+        "--grip",
+        "--thickness",
+        "--foundation",
+        "--profile",
+        "--mesh",
+    }
     assert set(assess) == contact | own
 
 
@@ -243,6 +254,8 @@ def test_every_option_of_a_contact_is_heeded(monkeypatch):
         "law": Morse(3.3),
         "thickness": None,
         "foundation": "bonded",
+        "profile": None,
+        "mesh": None,
     }
 
 

@@ -1,0 +1,142 @@
+"""A tip of another shape in an assessment: each profile and mesh against what the solvers give of it apart."""
+
+import json
+
+import numpy as np
+import pytest
+from whole_runs import ROOT
+
+import halfspace
+from fem_adhesion import Hemisphere, Scene, cli, convergence
+from fem_adhesion.assess.predictions import QUANTITIES, computed
+from fem_adhesion.assess.study import assess
+from fem_adhesion.common.contact import Contact
+from halfspace import profiles
+from halfspace.scaling import Units
+
+SILICA = {"radius": 100e-9, "modulus": 70e9, "poisson": 0.17, "work_of_adhesion": 0.1, "spacing": 0.3e-9}
+UNITS, STIFFNESS = Units(100e-9, 70e9 / (1 - 0.17**2), 0.1, 0.3e-9), 0.2
+OPTIONS = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--work-of-adhesion", "0.1J/m^2"]
+OPTIONS += ["--spacing", "0.3nm", "--stiffness", "0.2N/m"]
+MESH = ROOT / "meshes/hemisphere.msh"
+
+
+def told(record, name):
+    """Values of a model of the record, with their errors."""
+    return next(model["values"] for model in record["models"] if model["model"] == name)
+
+
+def agree(found, truth):
+    """Whether all quantities are the same within the errors of both."""
+    assert set(found) == set(truth) == set(QUANTITIES)
+    for name, one in found.items():
+        assert abs(one["value"] - truth[name].value) <= one["error"] + truth[name].error, name
+
+
+def table(folder):
+    """Blunted cone as a table in nm."""
+    r = np.linspace(0, 60, 300)
+    rows = np.stack([r, 30**2 / 100 * (np.hypot(1, r / 30) - 1)], axis=1)
+    np.savetxt(folder / "tip.csv", rows, fmt="%.17g", delimiter=",", header="r_nm,z_nm", comments="")
+    return str(folder / "tip.csv")
+
+
+@pytest.mark.parametrize(
+    ("word", "profile"),
+    [
+        ("power:2", profiles.PARABOLOID),
+        ("sphere", profiles.Sphere(UNITS.radius_ratio)),
+        ("hyperboloid:30nm", profiles.Hyperboloid(30e-9 / UNITS.length)),
+        ("tabulated:{table}", None),
+    ],
+)
+def test_a_profile_gives_what_its_curve_does(word, profile, tmp_path, capsys):
+    out = tmp_path / "a.json"
+    assert cli.main(["assess", *OPTIONS, "--profile", word.format(table=table(tmp_path)), "--json", str(out)]) == 0
+    said, record = " ".join(capsys.readouterr().out.split()), json.loads(out.read_text())
+    profile = profile or profiles.Tabulated(table(tmp_path), UNITS.radius_ratio)
+    path = halfspace.trace(UNITS.tabor, profile=profile, rtol=1e-7, to_load=2.0)
+    truth = computed("truth", path, STIFFNESS / UNITS.stiffness, UNITS)
+    agree(told(record, "given profile"), truth.values)
+    assert said.startswith("trust the given profile;")
+    assert "assume a paraboloid, and the tip is given as" in said
+    blunted = "hyperboloid" in word or "tabulated" in word
+    assert ("no other model is within" in said) == blunted
+    assert "stretching of the attracted surface" not in said
+
+
+def test_a_profile_on_a_thin_sample_is_traced_on_it():
+    layer = Contact(**SILICA, thickness=20e-9).layer
+    profile = profiles.Hyperboloid(15.0)
+    found = assess(Contact(**SILICA, thickness=20e-9, profile=profile, stiffness=STIFFNESS))
+    path = halfspace.trace(UNITS.tabor, profile=profile, body=layer, rtol=1e-6, to_load=2.0)
+    truth = computed("truth", path, STIFFNESS / UNITS.stiffness, UNITS)
+    agree({name: vars(one) for name, one in found.finite.values.items()}, truth.values)
+    assert [model.model for model in found.models[:3]] == ["half-space", "given profile", "thin sample"]
+    assert found.sample is None  # Hertz's theory and the series know no such tip
+
+
+def test_the_mesh_of_a_hemisphere_is_the_hemisphere(tmp_path):
+    out = tmp_path / "a.json"
+    assert cli.main(["assess", *OPTIONS, "--mesh", str(MESH), "--json", str(out)]) == 0
+    record = json.loads(out.read_text())
+    body = Hemisphere(radius_ratio=UNITS.radius_ratio, poisson=0.17)
+    path = convergence.trace(Scene(UNITS.tabor, body), rtol=1e-4, to_load=2.0)
+    agree(told(record, "mesh"), computed("truth", path, STIFFNESS / UNITS.stiffness, UNITS).values)
+    assert record["input"]["mesh"] == str(MESH)
+
+
+def test_the_picture_shows_the_jumps_of_the_given_profile():
+    from fem_adhesion.assess import figure
+
+    found = assess(Contact(**SILICA, profile=profiles.Power(3.0), stiffness=STIFFNESS))
+    assert found.best.model == "given profile"
+    (axes,) = figure.draw(found).axes
+    lines = {line.get_label(): line.get_ydata() for line in axes.lines}
+    deepest = float(np.nanmin(lines["given profile"]))
+    assert deepest == pytest.approx(-1e9 * found.best.values["pull_off_force"].value, rel=1e-6)
+    assert axes.get_ylim()[0] < deepest
+    on, off = (text for text in axes.texts if text.arrow_patch)
+    for arrow, name in ((on, "jump_on_separation"), (off, "jump_off_separation")):
+        assert arrow.xyann[0] == pytest.approx(1e9 * found.best.values[name].value)
+
+
+def test_the_spread_of_a_radius_keeps_the_length_of_the_tip(tmp_path):
+    """The cone's length stays 30 nm while the radius and the unit of length vary: a difference of two curves."""
+    out = tmp_path / "a.json"
+    given = [*OPTIONS[2:-2], "--profile", "hyperboloid:30nm", "--json", str(out)]
+    assert cli.main(["assess", "--radius", "100+-10nm", *given]) == 0
+    spread = json.loads(out.read_text())["spreads"]
+    forces = []
+    for R in (97.5e-9, 102.5e-9):
+        units = Units(R, UNITS.modulus, 0.1, 0.3e-9)
+        path = halfspace.trace(units.tabor, profile=profiles.Hyperboloid(30e-9 / units.length), rtol=1e-6)
+        forces.append(-path.events["pull_off"].load * units.load)
+    assert spread["model"] == "given profile"
+    found = spread["quantities"]["pull_off_force"]["deviation"]
+    assert found == pytest.approx(abs(forces[1] - forces[0]) * 2, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (["--profile", "power:3", "--grip", "bonded"], "--grip would have no effect, limit: without --profile"),
+        (["--profile", "power:3", "--counter-radius", "1um"], "does not go with another round body"),
+        (["--profile", "power:3", "--mesh", str(MESH)], "does not go with a mesh, which has its own surface"),
+        (["--mesh", str(MESH), "--thickness", "9nm"], "does not go with another body or a thin sample"),
+        (["--mesh", str(MESH), "--modulus", "70MPa"], "limit: 0 <= tabor <= 10 with --mesh"),
+        (["--mesh", str(MESH), "--poisson", "0.2+-0.01"], "poisson has a standard deviation, limit: none with --mesh"),
+        (["--mesh", "no.msh"], "no.msh"),
+        (["--profile", "power:3", "--modulus", "0.1MPa"], "<= tabor <= 300 with --profile"),
+        (["--profile", "tabulated:{table}", "--radius", "90nm"], "apex has 100 in its table's unit"),
+        (["--profile", "tabulated:{table}", "--radius", "100+-9nm"], "limit: none with a tip's table"),
+        (["--profile", "hyperboloid:30"], "b = 30 has no unit"),
+        (["--profile", "cone:3"], "profile = cone, limit: one of"),
+    ],
+)
+def test_what_does_not_go_with_a_shape_is_refused_in_a_line(more, words, tmp_path, capsys):
+    own = [word.format(table=table(tmp_path)) for word in more]
+    assert cli.main(["assess", *OPTIONS, *own]) == 2
+    said = capsys.readouterr().err
+    assert words in said
+    assert said.count("\n") == 1
