@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
+from skfem import Basis, ElementQuad2, ElementTriP2, MeshQuad, MeshTri
 from skfem.refdom import RefTri
 
 from fem_adhesion.elasticity.space import Space
@@ -24,10 +25,6 @@ from fem_adhesion.elasticity.stress import positions, sampled
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
-QUAD9 = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1], [1, 1]])
-"""Steps to the nodes of a quadrilateral from its first, in VTK's order: corners, middles of sides, centre."""
-
-TRIANGLE6 = np.array([[0, 0], [2, 0], [0, 2], [1, 0], [1, 1], [0, 1]])  # the same of a triangle
 MOST_CUTS = 12  # into which a side of an element is ever cut
 SAME = 1e-3  # of the shortest distance between two nodes of a cell, within which points are one
 
@@ -40,27 +37,24 @@ class Lattice:
     triangular: bool
 
     @cached_property
-    def steps(self) -> Index:
-        """Nodes (k, 2) counted along the sides, in halves of cells."""
-        m = 2 * self.cuts
-        every = product(range(m + 1), repeat=2)
-        return np.array([(i, j) for i, j in every if not self.triangular or i + j <= m])
+    def basis(self) -> Basis:
+        """The cells as a mesh of scikit-fem, whose elements number their nodes as VTK does."""
+        sides = np.linspace(0, 1, self.cuts + 1)
+        if not self.triangular:
+            return Basis(MeshQuad.init_tensor(sides, sides), ElementQuad2())
+        square = MeshTri.init_tensor(sides, sides).scaled((-1, 1)).translated((1, 0))
+        below = square.p[:, square.t].mean(axis=1).sum(axis=0) < 1
+        return Basis(square.restrict(np.flatnonzero(below)), ElementTriP2())
 
-    @cached_property
+    @property
     def places(self) -> Array:
         """Nodes (2, k) in the reference element."""
-        return np.ascontiguousarray(self.steps.T / (2 * self.cuts))
+        return np.asarray(self.basis.doflocs)
 
-    @cached_property
+    @property
     def cells(self) -> Index:
         """Nodes of each cell, (cells, 6 or 9), in VTK's order."""
-        m, shape = 2 * self.cuts, TRIANGLE6 if self.triangular else QUAD9
-        firsts = [np.array(first) for first in product(range(0, m, 2), repeat=2)]
-        cells = [first + shape for first in firsts if not self.triangular or first.sum() < m]
-        if self.triangular:
-            cells += [first + 2 - shape for first in firsts if first.sum() < m - 2]
-        number = {tuple(step): k for k, step in enumerate(self.steps.tolist())}
-        return np.array([[number[tuple(step)] for step in cell] for cell in np.array(cells).tolist()])
+        return np.asarray(self.basis.element_dofs.T)
 
 
 @dataclass(frozen=True)
@@ -159,19 +153,11 @@ def _shown_error(space: Space, fields: Array, lattice: Lattice) -> float:
 
 def _between(lattice: Lattice) -> tuple[Array, Array]:
     """Points of the reference element half-way between nodes of the cells, cell by cell, and shapes (c, n) there."""
-    shape = TRIANGLE6 if lattice.triangular else QUAD9
-    steps = np.array([*product((0.5, 1.0, 1.5), repeat=2), (0.0, 0.5), (0.0, 1.5), (0.5, 0.0), (1.5, 0.0)])
-    kept = steps.sum(axis=1) <= 2 if lattice.triangular else slice(None)
-    shapes = _powers(steps[kept], lattice.triangular) @ np.linalg.inv(_powers(shape, lattice.triangular))
-    nodes = lattice.places[:, lattice.cells]
-    return (nodes @ shapes.T).reshape(2, -1), shapes
-
-
-def _powers(steps: Array | Index, triangular: bool) -> Array:
-    """Monomials of a cell's polynomials at points (points, 2), (points, 6 or 9)."""
-    x, y = steps.T
-    powers = [(i, j) for i, j in product(range(3), repeat=2) if not triangular or i + j <= 2]
-    return np.stack([x**i * y**j for i, j in powers], axis=1)
+    X = np.array([*product((0.25, 0.5, 0.75), repeat=2), (0.0, 0.25), (0.0, 0.75), (0.25, 0.0), (0.75, 0.0)]).T
+    X = X[:, X.sum(axis=0) <= 1] if lattice.triangular else X
+    basis = lattice.basis
+    shapes = np.stack([basis.elem.lbasis(X, i)[0] for i in range(basis.Nbfun)], axis=1)
+    return basis.mapping.F(X).reshape(2, -1), shapes
 
 
 SEGMENT = 15.0  # largest angle of a cell in degrees
