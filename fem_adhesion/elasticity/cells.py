@@ -21,10 +21,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial.legendre import legvander2d
-from skfem import ElementQuadP
 from skfem.refdom import RefTri
 
-from fem_adhesion.elasticity.reference import integrated, products, quadrature, reference_functions
+from fem_adhesion.elasticity.reference import quadrature, reference_functions
 from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure
 from fem_adhesion.materials import Elastic
 from halfspace.errors import InputError
@@ -137,10 +136,12 @@ class Cells(Valued):
 
         The factors (3, 3, 3, c, q) are of u_r with u_r, u_z with u_r and u_z with u_z.
         """
-        if isinstance(self.space.element, ElementQuadP):
-            return integrated(factors, products(self.space.element, _order(self.space)))
-        r, z_r, z = np.einsum("mabcq,aiq,bjq->mcij", factors, self.functions, self.functions, optimize=True)
-        return np.block([[r, z_r.transpose(0, 2, 1)], [z_r, z]])
+        c, n = len(self.radii), self.functions.shape[1]
+        K, by_point = np.empty((c, 2, n, 2, n)), self.functions.transpose(1, 0, 2).reshape(n, -1)
+        for both, (i, j) in zip(factors, ((0, 0), (1, 0), (1, 1)), strict=True):
+            K[:, i, :, j] = np.einsum("abcq,anq->cnbq", both, self.functions).reshape(c, n, -1) @ by_point.T
+        K[:, 0, :, 1] = K[:, 1, :, 0].transpose(0, 2, 1)
+        return K.reshape(c, 2 * n, -1)
 
 
 def cell_stiffness(cells: Cells, poisson: float) -> Array:
