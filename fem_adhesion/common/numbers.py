@@ -132,6 +132,8 @@ def with_error(quantity: Estimate, scale: float = 1.0, digits: int = DIGITS) -> 
     most = digits - 1 - decade(number.value)
     decimals = max(0, min(most, -decade(number.error)) if number.error else most)
     uncertain = max(1, math.ceil(number.error * 10**decimals * (1 - 1e-9)))
+    if uncertain == 10 and decimals:
+        decimals, uncertain = decimals - 1, 1
     return f"{number.value:.{decimals}f}({uncertain})"
 
 

@@ -22,9 +22,11 @@ UNIT = r"(?:%|[yzafpnµmkMGT]?(?:m|N|Pa|J|N/m|J/m\^2)|s|R|eps|beta|unknowns|poin
 TOGETHER = re.compile(rf"(?<=[\d)]) (?={UNIT})|(?<=\bR) (?=dgamma)|(?<=dgamma) (?=eps)")
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
+FRAMED_FROM = 100  # columns of a terminal in which tables have frames; below, all have the room of the frames instead
 FRAMED: Mapping[str, Any] = {"box": box.HEAVY_HEAD}
 PLAIN: Mapping[str, Any] = {"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "padding": (0, 0)}
-LAYOUTS = ((60, FRAMED), (20, FRAMED), (20, PLAIN), (14, PLAIN))
+AIRY: Mapping[str, Any] = {**PLAIN, "padding": (0, 1, 0, 0)}
+LAYOUTS = ((60, FRAMED), (20, FRAMED), (60, AIRY), (20, AIRY), (20, PLAIN), (17, PLAIN), (14, PLAIN))
 """How a table may be laid out, the best first: widths of columns of words, and how rich frames the table."""
 
 
@@ -84,7 +86,8 @@ class Fitted:
         """Title, table or list, and caption."""
         if self.title:
             yield flow(self.title, style="italic")
-        tables = (self._table(*layout) for layout in LAYOUTS)
+        framed = options.max_width >= FRAMED_FROM
+        tables = (self._table(*layout) for layout in LAYOUTS if framed or layout[1] is not FRAMED)
         unbounded = options.update(max_width=10_000)
         fitting = (t for t in tables if console.measure(t, options=unbounded).maximum <= options.max_width)
         if table := next(fitting, None):

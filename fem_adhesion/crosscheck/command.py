@@ -57,10 +57,11 @@ def run(options: argparse.Namespace) -> int:
         if case.reason:
             failed = f"{', '.join(case.scene.words)}: failed: {case.told}"
             lines = [failed, *(f"  {row.quantity}: {row.verdict}" for row in case.rows)]
-            console.print("\n".join(lines), highlight=False, markup=False)
+            console.print(*lines, "", sep="\n", highlight=False, markup=False)
         else:
-            console.print(*crosscheck_tables(case))
-        console.print()
+            for table in crosscheck_tables(case):
+                console.print(table)
+                console.print()
     return AGREE if record["verdict"] == "agree" else DISAGREE
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_adhesion.common.facts import plain, versions
-from fem_adhesion.common.numbers import counted
+from fem_adhesion.common.numbers import counted, with_error
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.errors import InputError
 from halfspace.values import Estimate
@@ -172,22 +172,13 @@ def _row(row: Row) -> dict[str, Any]:
     return found
 
 
-SHORT = {
-    "half-space": "hs",
-    "overlapping triangles": "tr",
-    "harmonics": "ha",
-    "finite elements": "fe",
-    "weak form": "wf",
-    "closed form": "cf",
-}
-WORDS = ("quantity", "unit", "verdict")  # columns without numbers
+WORDS = ("quantity", "verdict")  # columns without numbers
 STYLES = {"agree": "green", "disagree": "bold red", "inconclusive": "yellow"}
 
 
 def columns(between: Pair = SOLVERS) -> tuple[str, ...]:
     """Headers of a table of quantities from two sources."""
-    errors = (f"error ({SHORT[source]})" for source in between)
-    return ("quantity", "unit", *between, "difference", *errors, "budget", "verdict")
+    return ("quantity", *between, "difference", "budget", "verdict")
 
 
 def crosscheck_tables(case: Case) -> list[Fitted]:
@@ -204,28 +195,20 @@ def crosscheck_tables(case: Case) -> list[Fitted]:
     for between in dict.fromkeys(row.between for row in case.rows):
         own = [row for row in case.rows if row.between == between]
         named = zip(columns(between), zip(*map(cells, own), strict=True), strict=True)
-        made = [Column(name, texts, name in WORDS) for name, texts in named]
+        made = [Column(name.replace(" ", "\n"), texts, name in WORDS) for name, texts in named]
         styles = ["" if row.verdict == "agree" else STYLES[row.verdict] for row in own]
         tables.append(Fitted(made, [" and ".join(between)] if tables else title, [] if tables else cost, styles))
     return tables
 
 
 def cells(row: Row) -> tuple[str, ...]:
-    """Texts under `columns`: values with digits down to the first uncertain one, errors with two."""
-    both = (row.first, row.second)
-    errors = (_small(one.error if one else math.nan) for one in both)
-    numbers = (*map(_value, both), _small(row.difference), *errors, _small(row.budget))
-    return (row.quantity, row.unit, *numbers, row.verdict)
+    """Texts under `columns`: values with the error of the last digit in brackets, other numbers with two digits."""
+    values = (with_error(one, digits=DIGITS) if one else "none" for one in (row.first, row.second))
+    quantity = " in ".join(filter(None, (row.quantity, row.unit)))
+    return (quantity, *values, _small(row.difference), _small(row.budget), row.verdict)
 
 
-def _value(estimate: Estimate | None) -> str:
-    """Digits down to the first uncertain one; two of a residual, which is of the size of its error."""
-    if estimate is None:
-        return "none"
-    if not abs(estimate.value) >= 100 * estimate.error:
-        return _small(estimate.value)
-    digits = max(0, min(10, -math.floor(math.log10(estimate.error or 1e-10))))
-    return f"{estimate.value:.{digits}f}"
+DIGITS = 10  # of a value at most: more are rounding in sums over thousands of unknowns
 
 
 def _small(value: float) -> str:

@@ -18,3 +18,9 @@ def _lines(text):
 def _cells(tag, text):
     found = re.findall(rf"<{tag}\b([^>]*)>(.*?)</{tag}>", text, re.S)
     return [unescape(cell) for how, cell in found for _ in range(2 if 'colspan="2"' in how else 1)]
+
+
+def value_and_error(text):
+    """Number with the error of its last digit in brackets, as 60.4440(1); None of what is no such number."""
+    found = re.fullmatch(r"(-?\d+(?:\.(\d+))?)\((\d+)\)", text)
+    return found and (float(found[1]), int(found[3]) * 10.0 ** -len(found[2] or ""))
