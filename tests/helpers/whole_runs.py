@@ -127,12 +127,15 @@ def _target(arguments, directory, programs):
 
 def tables_in(text):
     """Tables drawn in a text, each as a list of lines: cells by the header above them."""
-    found = []
+    found, headers = [], []
     for line in text.splitlines():
-        if line.startswith("┃"):
-            header = [cell.strip() for cell in line.strip("┃").split("┃")]
+        if line.startswith("┏"):
+            headers = []
             found.append([])
+        elif line.startswith("┃"):
+            headers.append([cell.strip() for cell in line.strip("┃").split("┃")])
         elif line.startswith("│"):
+            header = [" ".join(filter(None, words)) for words in zip(*headers, strict=True)]
             cells = [cell.strip() for cell in line.strip("│").split("│")]
             found[-1].append(dict(zip(header, cells, strict=True)))
     return found
