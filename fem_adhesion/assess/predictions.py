@@ -37,7 +37,6 @@ half-space at the Tabor parameter 300, the last that is computed; it falls beyon
 
 QUANTITIES = tuple(MEASURES)
 WORDS = {name: words for name, (words, _) in MEASURES.items()}
-IN_CONTACT = ("pull_off_force", "pull_off_radius", "zero_load_radius", "jump_off_separation", "jump_off_base")
 ON_LAYER = "thin sample"
 ATTRACTING = "JKR with attraction"
 RADII = ("pull_off_radius", "zero_load_radius")
@@ -200,12 +199,20 @@ def large_tabor(tabor: float, stiffness: float, units: Units) -> Prediction:
 
 
 def large_tabor_on(layer: Layers, tabor: float, stiffness: float, units: Units) -> Prediction:
-    """JKR's theory on a thin sample, tabor >= 300: the contact's values and the jump off, as `large_tabor` else.
+    """JKR's theory with the reach of the attraction on a thin sample, tabor >= 300, as `large_tabor` else.
 
-    The distance grows where the spike at the edge is no longer narrow beside the thickness.
+    The distance grows where the spike at the edge is no longer narrow beside the thickness, and that of the jump on,
+    and of the energy that it decides on, where the bulge is not.
     """
-    read = closed(ON_LAYER, partial(theories.jkr_on, layer), tabor, stiffness, units)
-    return _widened(read, dict.fromkeys(IN_CONTACT, _remaining(tabor) * (1 + (USUAL.thin / layer.thickness) ** 3)))
+    read, h, part = (
+        closed(ON_LAYER, partial(theories.jkr_on, layer), tabor, stiffness, units),
+        layer.thickness,
+        _remaining(tabor),
+    )
+    parts = {
+        name: 1 + USUAL.bulge / h if "jump_on" in name else part * (1 + (USUAL.thin / h) ** 3) for name in QUANTITIES
+    }
+    return _widened(read, parts | {"energy_lost": part * (1 + (USUAL.bulge / h) ** 3)})
 
 
 def _remaining(tabor: float) -> float:
@@ -249,8 +256,7 @@ def relative(ours: Prediction, reference: Prediction, name: str, spacing: float)
     if a is None or b is None:
         return None
     axis = {n for names in POSITIONS if name in names for n in names}
-    whole = reference if axis <= reference.values.keys() else ours  # JKR's theory on layers jumps off only
-    alike = [q.value for n, q in whole.values.items() if n in axis]
+    alike = [q.value for n, q in reference.values.items() if n in axis]
     size = approach_scale(alike, spacing) if alike else abs(b.value)
     if not size:
         return None

@@ -26,6 +26,7 @@ class Settings:
     maugis: tuple[float, float] = (1e-6, 1e6)  # of Maugis's lambda
     decay: float = 1.5  # power of 1/mu with which the distance of JKR's theory with reach dies out
     thin: float = 0.12  # beta: on a layer so thick that distance at `computed` is at most twice the half-space's
+    bulge: float = 0.6  # beta: the jump on errs at `computed` by at most 1 + bulge/thickness of the half-space's error
 
     # Where models hold
     stiff: float = 0.1  # Tabor parameter below which a contact is rigid
@@ -41,6 +42,9 @@ class Settings:
     # Closed theories as samples
     number: int = 100_001  # of each stretch; odd, so that every second sample has the same ends
     nodes: int = 48  # of the polynomial through JKR's theory on layers
+    widths: int = 100  # of the attracted surface, for which a bulge on layers is found
+    waves: float = 40.0  # waves a width: e^-40 is left
+    wave_points: int = 200  # waves
     sampled: int = 8001  # places on the atlas' curve; energies err by 2e-7
     zooms: int = 3  # times that intervals beside a turn of the base are divided
     zoomed: int = 33  # places on such an interval

@@ -179,7 +179,7 @@ def _told_as_it_is(assessment: Assessment) -> Iterator[str]:
     """What the model of the contact as it is stands for, if that was solved."""
     contact, finite = assessment.contact, assessment.finite
     if finite and contact.layer:
-        yield f"Thin sample: under a rigid tip, {contact.shape or 'sphere'}; the half-space is as thick as can be."
+        yield f"Thin sample: under a rigid tip, {contact.shape or 'sphere'}; the half-space is a sample without a base."
     elif finite and contact.profile:
         yield f"Given profile: {contact.shape}, on the half-space."
     elif finite:

@@ -13,10 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebfit, chebpts1, chebval
+from scipy.interpolate import CubicSpline
+from scipy.special import kv
 
 from fem_adhesion.assess.settings import USUAL
 from halfspace import atlas
-from halfspace.elastic.layers import LayeredBody
+from halfspace.elastic import grid
+from halfspace.elastic.layers import LayeredBody, surface_compliance
 from halfspace.roots import root
 from halfspace.theories import closed_forms, dmt
 from halfspace.theories.closed_forms import ContactState
@@ -72,10 +75,7 @@ def jkr_with_reach(tabor: float, stiffness: float) -> Array:
 
     B makes the jump under fixed grips that of [G97]'s fit, (|alpha*| + 1)^(7/2) = 3 pi^2 mu^(3/2).
     """
-    bulge = REACH * tabor**1.5
-    past_the_jump = 0.5 * (2.5 * bulge) ** (2 / 7)
-    y = np.geomspace(_beyond(tabor, stiffness), past_the_jump, USUAL.number)
-    return _joined(_apart(1 - y - bulge * y**-2.5, -8 * np.pi / 3 * y**-2), _jkr_contact(tabor))
+    return _joined(_attracted(tabor, stiffness), _jkr_contact(tabor))
 
 
 def maugis_dugdale(tabor: float, stiffness: float) -> Array:
@@ -89,7 +89,12 @@ def maugis_dugdale(tabor: float, stiffness: float) -> Array:
 
 
 def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Array:
-    """JKR on a layered body; the contact is smooth in the root of its radius, by which it is interpolated."""
+    """JKR on a layered body, and before contact the far attraction as in `jkr_with_reach`.
+
+    The contact is smooth in the root of its radius, by which it is interpolated. The attraction falls with the radius u
+    as (1 + u^2/s^2)^-3, s^2 = 2 y/mu, whose waves k have the amplitude (k s)^2 K_2(k s) dk: the bulge is a half-space's
+    times the mean of the layers' yield S(k) by these.
+    """
     theory = OnLayers(body)
     what = "the widest contact; take a half-space"
     widest = root(lambda a: theory.jkr(a).load - USUAL.compressed, USUAL.smallest, WIDEST, what)
@@ -98,7 +103,15 @@ def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Array:
     through = chebfit(nodes, np.array([[state.approach, state.load] for state in states]), USUAL.nodes - 1)
     s = np.linspace(0.0, 1.0, USUAL.number)
     approach, load = chebval(2 * s - 1, through)
-    return _joined(_far(0.0, tabor, stiffness), np.stack([tabor * approach, load, widest * s**2]))
+
+    first, last = math.log(2 / tabor) / 2, math.log(2 * _beyond(tabor, stiffness) / tabor) / 2
+    widths = np.linspace(first, last, USUAL.widths)
+    waves, weights = (part.ravel() for part in grid.gauss_points(np.array([0.0, USUAL.waves]), USUAL.wave_points))
+    weights = weights * waves**2 * kv(2, waves)
+    yields = surface_compliance(body, np.outer(np.exp(-widths), waves).ravel()).reshape(widths.size, -1) @ weights
+    raised = CubicSpline(widths, yields / weights.sum())
+    apart = _attracted(tabor, stiffness, lambda y: raised(np.log(2 * y / tabor) / 2))
+    return _joined(apart, np.stack([tabor * approach, load, widest * s**2]))
 
 
 def far_end(curve: atlas.Curve) -> tuple[float, float]:
@@ -142,6 +155,14 @@ def _jkr_contact(tabor: float) -> Array:
     """Contact branch from a point contact on."""
     a = WIDEST * np.linspace(0.0, 1.0, USUAL.number) ** 2
     return np.stack([closed_forms.jkr_approach(a, tabor), closed_forms.jkr_load(a), a])
+
+
+def _attracted(tabor: float, stiffness: float, raised: Callable[[Array], Array] = np.ones_like) -> Array:
+    """Stretch from afar to past its fold: attraction and the bulge, of a half-space times what gaps in eps make it."""
+    y = np.geomspace(_beyond(tabor, stiffness), 1.0, USUAL.number)
+    approach = 1 - y - REACH * tabor**1.5 * raised(y) * y**-2.5
+    kept = y > 0.5 * y[np.argmax(approach)]
+    return _apart(approach[kept], -8 * np.pi / 3 * y[kept] ** -2)
 
 
 def _far(last: float, tabor: float, stiffness: float, load: Callable[[Array], Array] = np.zeros_like) -> Array:
