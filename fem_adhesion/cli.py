@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from fem_adhesion.assess.command import COMMAND as ASSESS
 from fem_adhesion.benchmark.command import COMMAND as BENCHMARK
-from fem_adhesion.common.files import NotWritten
+from fem_adhesion.common.files import STANDARD, WRITTEN, NotWritten
 from fem_adhesion.common.jobs import keep_to_one_thread
 from fem_adhesion.common.options import BAD_INPUT, COMMAND, DISAGREE, NOT_WRITTEN, Parser, ended, ended_by_signal
 from fem_adhesion.crosscheck.command import COMMAND as COMPARE
@@ -40,10 +40,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     options = make_parser().parse_args(arguments)
     asked = COMMAND.set(shlex.join(["fem-adhesion", *arguments]))
+    written: list[str] = []
+    noted = WRITTEN.set(written)
     keep_to_one_thread()
     try:
         with ended_by_signal():
-            return int(options.run(options))
+            code = int(options.run(options))
+        _tell_written(written)
+        return code
     except InputError as error:
         return _told(error, BAD_INPUT)
     except NotConverged as error:
@@ -58,6 +62,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return ended(how, "nothing was written")
     finally:
         COMMAND.reset(asked)
+        WRITTEN.reset(noted)
+
+
+def _tell_written(names: Sequence[str]) -> None:
+    """Say in one line what was written, on standard error where standard output carries data."""
+    files = [name for name in names if name != str(STANDARD)]
+    if files:
+        print(f"written: {' '.join(files)}", file=sys.stdout if files == names else sys.stderr)
 
 
 def _told(why: object, code: int) -> int:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside
+from fem_adhesion.common.options import AGREE, Command, Parser, add_files, all_written, console_beside
 from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, add_profile, inputs_of, profile_of, refuse
 from halfspace.errors import InputError
 
@@ -36,10 +36,7 @@ def add_options(command: Parser) -> None:
     results = command.add_argument_group("results")
     digits = "of the numbers shown: 4 at most, or all with the errors of the last ones; files have all"
     results.add_argument("--digits", choices=("4", "all"), default="4", help=digits)
-    results.add_argument(
-        "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
-    )
-    results.add_argument("--plot", type=Path, help="also draw force against distance: png, svg or pdf", metavar="FILE")
+    add_files(results, json="what is found", plot="force against distance")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -6,7 +6,16 @@ import argparse
 import json
 from pathlib import Path
 
-from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, all_written, console_beside
+from fem_adhesion.common.options import (
+    AGREE,
+    DISAGREE,
+    Command,
+    Parser,
+    add_files,
+    add_force,
+    all_written,
+    console_beside,
+)
 from fem_adhesion.common.scene_options import given, refuse
 from halfspace.errors import InputError
 
@@ -19,11 +28,8 @@ def add_options(command: Parser) -> None:
     command.add_argument("--problems", type=Path, help=sheets, metavar="DIR")
     names = "of the sheets, as half-space-0.5 or layer-2-1; a dozen unless given"
     command.add_argument("--names", nargs="+", help=names, metavar="NAME")
-    command.add_argument("--force", action="store_true", help="replace files in a directory that is not empty")
-    command.add_argument(
-        "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
-    )
-    command.add_argument("--plot", type=Path, help="also draw the deviations: png, svg or pdf", metavar="FILE")
+    add_force(command)
+    add_files(command, json="what is found", plot="the deviations")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -65,7 +71,6 @@ def run(options: argparse.Namespace) -> int:
 def _write(options: argparse.Namespace) -> int:
     from fem_adhesion.benchmark import problems, terminal
     from fem_adhesion.common.files import directory_written_aside, writing
-    from fem_adhesion.common.numbers import counted
 
     if unheeded := given(options, "json", "plot"):
         raise InputError(f"{', '.join(unheeded)} would not be heeded, limit: with a CSV file; leave it out")
@@ -74,7 +79,6 @@ def _write(options: argparse.Namespace) -> int:
         _ = problem.values  # solved for before anything is written
     with directory_written_aside(options.problems, force=options.force) as aside, writing(options.problems):
         terminal.write(asked, aside)
-    print(f"sheets and templates of {counted(len(asked), 'problem')} written: {options.problems}")
     return AGREE
 
 

@@ -22,6 +22,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TextIO
@@ -43,6 +44,16 @@ REMEDIES: Mapping[int, str] = {
 ELSEWHERE = "choose another place"
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # what is no fault of the name that was given
 STANDARD = Path("-")  # stands for standard output
+
+
+WRITTEN: ContextVar[list[str] | None] = ContextVar("written", default=None)
+"""Names of what the command that is being run has written; `STANDARD` where its standard output carries data."""
+
+
+def _note(path: Path | str, *, replaced: bool = False) -> None:
+    """Note what a command has written."""
+    if (names := WRITTEN.get()) is not None:
+        names.append(f"{path} (replaced)" if replaced else str(path))
 
 
 class NotWritten(RuntimeError):
@@ -95,11 +106,15 @@ def all_written_aside(paths: Sequence[Path], *, begun: bool = False) -> Iterator
         for path, contents, aside, target in zip(paths, held, asides, targets, strict=True):
             with writing(path):
                 if aside and target:
+                    replaced = target.is_file()
                     _put(aside, target)
+                    if not begun:  # files of a store are not what was asked for
+                        _note(path, replaced=replaced)
                 elif _is_standard_output(path):
                     sys.stdout.flush()
                     sys.stdout.buffer.write(contents.getvalue())
                     sys.stdout.flush()
+                    _note(STANDARD)
                 else:
                     path.write_bytes(contents.getbuffer())
     finally:
@@ -149,7 +164,7 @@ def _put(aside: Path, target: Path) -> None:
 
 
 @contextmanager
-def directory_written_aside(path: Path, *, force: bool = False) -> Iterator[Path]:
+def directory_written_aside(path: Path, *, force: bool | None = False) -> Iterator[Path]:
     """Make an empty directory whose files move into `path` when the block ends well, and vanish if it does not.
 
     In the block, what writes the files stands under `writing`. The path is in a folder that exists; by force it may be
@@ -158,21 +173,29 @@ def directory_written_aside(path: Path, *, force: bool = False) -> Iterator[Path
     places.
     """
     with writing(path, begun=False):
-        present, target = _present(path), path.resolve()
-        if present and not force:
-            raise InputError(f"{path} holds {present} files, limit 0; empty it, choose another or use --force")
+        present, target = require_room(path, force=force), path.resolve()
         aside = _unique(target.parent if present is None else target)
         aside.mkdir()
     try:
         yield aside
+        made = sorted(file.name for file in aside.iterdir())
         with writing(path):
             if present is None:  # in one step
                 aside.replace(target)
             else:
                 for file in aside.iterdir():
                     _put(file, (target / file.name).resolve())
+        _note(f"{path}/{'index.html' if 'index.html' in made else ''} ({len(made)} files)")
     finally:
         shutil.rmtree(aside, ignore_errors=True)
+
+
+def require_room(directory: Path, *, force: bool | None = False) -> int | None:
+    """Number of files in a directory for results, None if there is none; InputError if there are any and no force."""
+    present = _present(directory)
+    if present and not force:
+        raise InputError(f"{directory} holds {present} files, limit 0; empty it, choose another or use --force")
+    return present
 
 
 def _present(directory: Path) -> int | None:

@@ -134,11 +134,37 @@ def exit_code_of(troubles: Sequence[str]) -> int:
     return DISAGREE if troubles else AGREE
 
 
+FILES = {
+    "json": "write {} as JSON, - for standard output",
+    "csv": "write {} as a table, - for standard output",
+    "plot": "draw {}: png, svg or pdf",
+    "html": "write {} as one HTML file",
+}
+
+
+def add_files(group: Any, *, required: bool = False, **contents: str) -> None:
+    """Add options that name a file, by the names of `FILES`, each with what is written. What is there is replaced."""
+    for name, what in contents.items():
+        group.add_argument(f"--{name}", type=Path, required=required, help=FILES[name].format(what), metavar="FILE")
+
+
 def add_output(command: Parser) -> None:
     """Add the options of a command that writes a directory."""
     results = command.add_argument_group("results")
-    results.add_argument("--out", type=Path, required=True, help="directory for the results", metavar="DIR")
-    results.add_argument("--force", action="store_true", help="replace files in a directory that is not empty")
+    results.add_argument("--out", type=Path, required=True, help="write the results into this directory", metavar="DIR")
+    add_force(results)
+
+
+def add_force(group: Any) -> None:
+    """Add the option of who names a directory that holds files, whose names the program chooses."""
+    text = "replace files of the same names in a directory that is not empty"
+    group.add_argument("--force", action="store_true", default=None, help=text)
+
+
+def add_resume(group: Any) -> None:
+    """Add the option of where many results are kept while they are computed."""
+    text = "keep each result in this directory as soon as it is there, and go on with those it holds"
+    group.add_argument("--resume", type=Path, help=text, metavar="DIR")
 
 
 def add_workers(command: Parser) -> None:

@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
 
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_workers, all_written, console_beside
+from fem_adhesion.common.options import (
+    AGREE,
+    DISAGREE,
+    Command,
+    Parser,
+    add_files,
+    add_workers,
+    all_written,
+    console_beside,
+)
 from fem_adhesion.common.scene_options import POISSON, add_body, scene_of
 
 
@@ -21,8 +29,7 @@ def add_options(command: Parser) -> None:
         scenes.add_argument(f"--{name}", type=float, help=of, metavar="NU")
     scenes.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
     add_body(body)
-    file = "also write the result to this file, - for standard output"
-    results.add_argument("--json", type=Path, help=file, metavar="FILE")
+    add_files(results, json="all quantities, their errors and both curves")
     add_workers(command)
 
 

@@ -108,9 +108,11 @@ def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> 
 def require(scene: Scene, laws: Sequence[Law]) -> None:
     """Refuse what cannot be laid beside each other, before any work."""
     if scene.sized or scene.radius_ratio:
-        raise InputError(f"beside with body = {scene.body.name}, limit: a body and profile without R/eps; leave it out")
+        raise InputError(
+            f"other_laws with body = {scene.body.name}, limit: a body and profile without R/eps; leave it out"
+        )
     if len(laws) >= len(LOOKS):
-        raise InputError(f"beside = {len(laws)} laws, limit: {len(LOOKS) - 1}; give fewer")
+        raise InputError(f"other_laws = {len(laws)} laws, limit: {len(LOOKS) - 1}; give fewer")
 
 
 def draw(beside: EquallyStrong) -> Figure:

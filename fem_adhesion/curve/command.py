@@ -9,7 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside, require_distinct
+from fem_adhesion.common.options import (
+    AGREE,
+    Command,
+    Parser,
+    add_files,
+    add_force,
+    all_written,
+    console_beside,
+    require_distinct,
+)
 from fem_adhesion.common.scene_options import add_body, add_contact, contact_of, refuse, scene_of, stiffness_of
 from fem_adhesion.common.words import part_in
 from fem_adhesion.curve.settings import USUAL
@@ -23,7 +32,7 @@ if TYPE_CHECKING:
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
 
-NOT_BY_WEAK_FORM = ("vtk", "render", "movie", "stress", "at", "beside", "points", "stiffness")
+NOT_BY_WEAK_FORM = ("vtk", "render", "movie", "stress", "at", "other_laws", "points", "stiffness")
 
 
 def add_options(command: Parser) -> None:
@@ -35,30 +44,33 @@ def add_options(command: Parser) -> None:
     pressure = "what the half-space's pressure is made of, triangles and bands as in 1997; panels unless given"
     body.add_argument("--kernel", choices=("panels", "triangles", "bands"), help=pressure)
     add_body(body)
-    beside = "draw curves by other laws, as strong, in the same units beside it: morse:3 power-law:4,10, say"
-    body.add_argument("--beside", nargs="+", help=beside, metavar="LAW")
+    others = "draw curves by other laws, as strong, in the same units beside it: morse:3 power-law:4,10, say"
+    body.add_argument("--other-laws", nargs="+", help=others, metavar="LAW")
     accuracy = "relative accuracy, 1e-9 to 1e-1, 1e-5 unless given; of weak-form 1e-4 to 1e-1, 1e-3 unless given"
     body.add_argument("--rtol", type=float, help=accuracy)
     body.add_argument("--to-load", type=float, default=5.0, help="load in R dgamma at which it ends", metavar="W")
-    results = command.add_argument_group("results", "A FILE may be - for standard output where it is text.")
+    results = command.add_argument_group("results")
+    add_files(
+        results,
+        json="points, events, units and settings",
+        csv="points and events",
+        plot="curve, profiles and mesh",
+    )
     points = f"in JSON, CSV and plot, as traced unless given; in DIR beside the events, {USUAL.inside} unless given"
     for name, metavar, kind, text in (
-        ("json", "FILE", Path, "write points, events, units and settings"),
-        ("csv", "FILE", Path, "write points and events as a table"),
-        ("plot", "FILE", Path, "draw curve, profiles and mesh: png, svg or pdf"),
         ("vtk", "DIR", Path, "write the fields inside the body for ParaView, by finite elements"),
         ("points", "N", int, points),
         ("revolve", "ANGLE", float, "write the solid of revolution too, degrees"),
         ("render", "FILE", Path, "draw the body cut open, with its stress: png"),
     ):
         results.add_argument(f"--{name}", type=kind, help=text, metavar=metavar)
-    where = "write the stress inside along the axis or the surface, or at points of a table r_nm,depth_nm, as a table"
+    where = "write a table of the stress inside, along the axis or the surface, or at points of a table r_nm,depth_nm"
     results.add_argument("--stress", nargs=2, help=where, metavar=("WHERE", "FILE"))
     events = ("pull_off", "jump_on", "jump_off", "zero_load")
     results.add_argument("--at", choices=events, help="event of --render and --stress; pull_off unless given")
     movie = "draw it up to the wall, onto it and off again: gif"
     results.add_argument("--movie", type=Path, help=movie, metavar="FILE")
-    results.add_argument("--force", action="store_true", default=None, help="replace files in a DIR that is not empty")
+    add_force(results)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -68,7 +80,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.curve import terminal
     from fem_adhesion.curve.solve import solve
 
-    question, laws = _question(options), [part_in("law", word) for word in options.beside or ()]
+    question, laws = _question(options), [part_in("law", word) for word in options.other_laws or ()]
     if laws:
         from fem_adhesion.curve import beside
 

@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from fem_adhesion.common.jobs import in_turn, progress_bar
-from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_output, add_workers, ended
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_output, add_resume, add_workers, ended
 
 
 def add_options(command: Parser) -> None:
@@ -19,20 +19,23 @@ def add_options(command: Parser) -> None:
     command.add_argument(
         "--quick", action="store_true", help="finish in half a minute: three by three points, less accurate"
     )
-    command.add_argument("--resume", action="store_true", help="go on with the cases that the directory holds")
+    add_resume(command)
     add_workers(command)
     add_output(command)
 
 
 def run(options: argparse.Namespace) -> int:
     """Run what is left of the study and write table, pictures and page; 1 if any case has no solution, else 0."""
-    from fem_adhesion.common.files import directory_written_aside, open_store, writing
+    from fem_adhesion.common.files import directory_written_aside, open_store, require_room, writing
     from fem_adhesion.finite_sphere import page
     from fem_adhesion.finite_sphere import study as finite_sphere
 
     plan = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
-    store = open_store(options.out, finite_sphere.code(), resume=options.resume, force=options.force)
-    settings = {"jobs": options.jobs, "dask": options.dask, "fresh": options.force and not options.resume}
+    place = options.resume or options.out
+    if place.resolve() != options.out.resolve():
+        require_room(options.out, force=options.force)
+    store = open_store(place, finite_sphere.code(), resume=bool(options.resume), force=options.force)
+    settings = {"jobs": options.jobs, "dask": options.dask, "fresh": bool(options.force and not options.resume)}
     try:
         with progress_bar() as step:
             solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
@@ -41,10 +44,10 @@ def run(options: argparse.Namespace) -> int:
             note = page.write(study, aside, in_turn(step, len(page.PARTS)))
             page.remove_outdated(options.out, aside)
     except KeyboardInterrupt as how:
-        return ended(how, f"what is done is kept in {options.out}, --resume goes on")
+        return ended(how, f"what is done is kept in {place}, --resume {place} goes on")
     for line in filter(None, (*store.notes, note)):
         print(f"fem-adhesion: {line}", file=sys.stderr)
-    print(f"{study.headline}; written: {options.out / 'index.html'}")
+    print(study.headline)
     return DISAGREE if study.failed else AGREE
 
 
@@ -52,8 +55,8 @@ COMMAND = Command(
     "finite-sphere",
     "measure how far the half-space is from a finite sphere, and why",
     "Solve the contact under one assumption less at a time, over Tabor parameters, R/eps and Poisson's "
-    "ratios. Each case is stored at once: what is interrupted goes on with --resume. Exits with 1 if a "
-    "case has no solution.",
+    "ratios. Each case is stored at once, in --out or where --resume says: what is interrupted goes on with --resume. "
+    "Exits with 1 if a case has no solution.",
     "--out sphere --quick",
     add_options,
     run,

@@ -9,7 +9,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_adhesion.common.options import AGREE, Command, Parser, add_workers, all_written, console_beside
+from fem_adhesion.common.options import (
+    AGREE,
+    Command,
+    Parser,
+    add_files,
+    add_resume,
+    add_workers,
+    all_written,
+    console_beside,
+)
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -46,15 +55,11 @@ def add_options(command: Parser) -> None:
     models = "fitted beside the atlas: maugis-dugdale, jkr, dmt; all three unless given"
     command.add_argument("--models", nargs="+", help=models, metavar="MODEL")
     results = command.add_argument_group("results")
-    results.add_argument(
-        "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
-    )
-    results.add_argument("--plot", type=Path, help="also draw data, fit and contour: png, svg or pdf", metavar="FILE")
+    add_files(results, json="what is found", plot="data, fit and contour")
     results.add_argument("--nanite", type=Path, help="write a fit model for nanite and PyJibe", metavar="FILE.py")
     many = command.add_argument_group("many curves")
-    many.add_argument("--csv", type=Path, help="also write the table, - for standard output", metavar="FILE")
-    resume = "keep fits in the directory as soon as they are there, and go on with those it holds"
-    many.add_argument("--resume", type=Path, help=resume, metavar="DIR")
+    add_files(many, csv="the fits")
+    add_resume(many)
     add_workers(command)
 
 

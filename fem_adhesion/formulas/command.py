@@ -14,7 +14,6 @@ def run(options: argparse.Namespace) -> int:
 
     with directory_written_aside(options.out, force=options.force) as aside, writing(options.out):
         emit.write(aside)
-    print(f"{', '.join(emit.NAMES)} written: {options.out}")
     return AGREE
 
 

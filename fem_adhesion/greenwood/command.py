@@ -25,9 +25,7 @@ def run(options: argparse.Namespace) -> int:
         study = greenwood.compute(quick=options.quick, begin=begin)
         with writing(options.out):
             page.write(study, aside, begin)
-    code = exit_code_of(list(study.troubles()))
-    print(f"written: {options.out / 'index.html'}")
-    return code
+    return exit_code_of(list(study.troubles()))
 
 
 COMMAND = Command(

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_files
 
 STUDIES = {
     "speed": "speed against error",
@@ -19,7 +19,7 @@ STUDIES = {
 
 def add_options(command: Parser) -> None:
     """Add the options."""
-    command.add_argument("--out", type=Path, required=True, help="the page", metavar="FILE")
+    add_files(command, required=True, html="the page")
     tabors = [0.05, 0.5, 1, 2, 3, 5]
     command.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
     command.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
@@ -47,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
     directories = {name: directory for name, directory in named.items() if directory is not None}
     for name, directory in directories.items():
         section_of(name, directory)  # refuse a directory before any work
-    with written_aside(options.out) as file, progress_bar() as step:
+    with written_aside(options.html) as file, progress_bar() as step:
         cases = []
         step("comparison", 0, len(scenes))
         for case in crosscheck.run(scenes, rtol=options.rtol):
@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
         step("page", 0, 1)
         file.write(page(contents))
     verdict = "failed" if contents.lost else overall_verdict(cases)
-    print(f"verdict: {verdict}; written: {options.out}")
+    print(f"verdict: {verdict}")
     return AGREE if verdict == "agree" else DISAGREE
 
 
@@ -72,7 +72,7 @@ COMMAND = Command(
     "write one self-contained page: verdict, tables, figures, and a curve to walk along",
     "Compare both solvers and write one HTML page with all that shows it. Results of other commands "
     "are taken from the directories that they wrote; what is not given is said to be not computed.",
-    "--out report.html --tabor 0.5 2 --rtol 1e-4",
+    "--html report.html --tabor 0.5 2 --rtol 1e-4",
     add_options,
     run,
 )

@@ -5,12 +5,21 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_adhesion.common.files import STANDARD
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_workers, all_written, ended
+from fem_adhesion.common.options import (
+    AGREE,
+    DISAGREE,
+    Command,
+    Parser,
+    add_files,
+    add_resume,
+    add_workers,
+    all_written,
+    ended,
+)
 from fem_adhesion.common.scene_options import add_law, law_of
 from halfspace.errors import InputError
 
@@ -30,11 +39,8 @@ def add_options(command: Parser) -> None:
     command.add_argument(
         "--to-load", type=float, default=5.0, help="load in R dgamma at which a curve ends", metavar="W"
     )
-    command.add_argument(
-        "--csv", type=Path, required=True, help="write the table; - for standard output", metavar="FILE"
-    )
-    resume = "keep curves in the directory as soon as they are there, and go on with those it holds"
-    command.add_argument("--resume", type=Path, help=resume, metavar="DIR")
+    add_files(command, required=True, csv="the events of each curve")
+    add_resume(command)
     add_workers(command)
 
 
@@ -102,7 +108,7 @@ def run(options: argparse.Namespace) -> int:
     met = f"{sum(not curve.missed for curve in solved)} as accurate as asked, rtol {options.rtol:g}"
     source = f"{len(known)} of them from halfspace.atlas" if known else "none from halfspace.atlas"
     told = f"{len(solved)} of {len(curves)} curves known, {source}, {folding} fold, {met}"
-    print(f"{told}; written: {options.csv}", file=out)
+    print(told, file=out)
     for curve in failed:
         print(f"fem-adhesion: tabor {curve.tabor:g}: {curve.reason}", file=sys.stderr)
     return DISAGREE if failed else AGREE

@@ -22,7 +22,7 @@ GREENWOOD = "fem-adhesion greenwood --out greenwood --quick"
 ON_ALL_CORES = "make compare"
 """The one run that takes every core: in others the cores are taken by the tests, and more processes only start up."""
 
-REPORT = "fem-adhesion report --out report.html"
+REPORT = "fem-adhesion report --html report.html"
 FROM_KEPT = (COMPARE, REPORT, "make compare")
 """What compares: parts that one of them has computed are taken from there, see `comparisons`."""
 

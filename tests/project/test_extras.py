@@ -51,7 +51,7 @@ def test_a_curve_is_traced_without_the_extra():
     "arguments",
     [
         ["curve", "--tabor", "1"],
-        ["report", "--out", "out.html"],
+        ["report", "--html", "out.html"],
     ],
     ids=lambda arguments: arguments[0],
 )  # fmt: skip

@@ -88,11 +88,13 @@ def test_a_command_of_the_pages_runs_to_its_end(line, whole):
     assert run.out.strip()
     assert "Traceback" not in run.err
     assert "Warning" not in run.err
+    (written,) = re.findall("^written: (.*)$", run.out, re.M)
     arguments = shlex.split(line)
     asked = [argument for flag, argument in itertools.pairwise(arguments) if flag in FILES]
     left = [file for file in Path(run.directory).rglob("*") if file.is_file()]
     for name in asked:
         assert (run / name).exists()
+        assert name in written
     for file in left:
         OPENED[file.suffix](file)
     assert bool(left) == bool(asked)
@@ -100,7 +102,7 @@ def test_a_command_of_the_pages_runs_to_its_end(line, whole):
     assert {file.relative_to(run.directory).parts[0] for file in left} == {*asked, *records}
 
 
-FILES = ("--plot", "--json", "--csv", "--vtk", "--render", "--movie", "--out", "--problems")
+FILES = ("--plot", "--json", "--csv", "--vtk", "--render", "--movie", "--out", "--problems", "--html")
 
 
 def _open_json(file):
@@ -162,7 +164,7 @@ def test_the_report_takes_what_other_commands_left(whole, monkeypatch, tmp_path,
     given = [f"--{name}={run / name.replace('finite-', '')}" for name, run in made.items()]
     page = tmp_path / "report.html"
     keep(*whole.args, monkeypatch)
-    assert cli.main(["report", "--out", str(page), "--tabor", "0.5", "--walk", "0.05", *given]) == 0
+    assert cli.main(["report", "--html", str(page), "--tabor", "0.5", "--walk", "0.05", *given]) == 0
     assert "verdict: agree" in capsys.readouterr().out
     text = page.read_text()
     for name in made:

@@ -82,7 +82,7 @@ def test_a_picture_enters_the_page_as_an_image(contents, tmp_path):
 @pytest.mark.parametrize(("picture", "words"), [(b"<html/>", "its first element is html"), (b"not", "syntax error")])
 def test_a_picture_that_is_none_is_refused_before_any_work(picture, words, tmp_path, capsys):
     speed_left(tmp_path, picture)
-    assert cli.main(["report", "--out", str(tmp_path / "report.html"), "--speed", str(tmp_path)]) == 2
+    assert cli.main(["report", "--html", str(tmp_path / "report.html"), "--speed", str(tmp_path)]) == 2
     error = capsys.readouterr().err
     assert f"{tmp_path / 'pull_off.svg'} is no SVG picture: {words}" in error
     assert error.endswith("; run its command again\n")
@@ -152,7 +152,7 @@ def test_a_table_of_other_columns_is_refused_before_any_work(option, name, conte
     (tmp_path / "locking.csv").write_text("poisson,error\n0.3,1e-5\n")
     if content is not None:
         (tmp_path / name).write_bytes(content)
-    assert cli.main(["report", "--out", str(tmp_path / "report.html"), option, str(tmp_path)]) == 2
+    assert cli.main(["report", "--html", str(tmp_path / "report.html"), option, str(tmp_path)]) == 2
     error = capsys.readouterr().err
     assert str(tmp_path / name) in error
     assert words in error
@@ -170,14 +170,14 @@ def test_the_page_has_what_other_commands_left(contents, tmp_path, monkeypatch, 
     file = tmp_path / "report.html"
     asked = solved_before(monkeypatch, contents, contents.cases)
     options = ["--tabor", "1", "3", "--rtol", "1e-2", "--walk", "2", "--hard", str(hard)]
-    assert cli.main(["report", "--out", str(file), *options]) == 0
+    assert cli.main(["report", "--html", str(file), *options]) == 0
     assert asked == [([Scene(1.0), Scene(3.0)], 1e-2), Question(Scene(2.0), "both", 1e-2), contents.curves]
     assert "verdict: agree" in capsys.readouterr().out
     html = file.read_text()
     assert "<td>tabor &lt;50&gt;</td>" in html
     assert "Of 1 cases: 1 converged." in html
     assert "make hard" not in html
-    line = f"fem-adhesion report --out {file} {' '.join(options)}"
+    line = f"fem-adhesion report --html {file} {' '.join(options)}"
     assert f"<p>To repeat: <code>{line}</code></p>" in html
 
 
@@ -208,9 +208,9 @@ def words_of(html):
 @pytest.mark.parametrize("verdict", ENDINGS)
 def test_page_and_exit_code_tell_the_verdict_of_the_cases(contents, verdict, tmp_path, monkeypatch, capsys):
     solved_before(monkeypatch, contents, ENDINGS[verdict])
-    code = cli.main(["report", "--out", str(tmp_path / "a.html"), "--tabor", "2"])
+    code = cli.main(["report", "--html", str(tmp_path / "a.html"), "--tabor", "2"])
     assert code == (0 if verdict == "agree" else 1)
-    assert capsys.readouterr().out == f"verdict: {verdict}; written: {tmp_path / 'a.html'}\n"
+    assert capsys.readouterr().out == f"verdict: {verdict}\nwritten: {tmp_path / 'a.html'}\n"
     html = (tmp_path / "a.html").read_text()
     assert html.count(f'<p class="verdict {verdict}">') == 1
     said = unescape(re.search(r'<p class="verdict.*?</p>', html, re.S)[0])
@@ -230,7 +230,7 @@ def test_a_curve_that_cannot_be_solved_is_said_to_be_missing(tmp_path, monkeypat
 
     monkeypatch.setattr(beside, "run", lambda scenes, rtol: iter(ENDINGS["agree"]))  # noqa: ARG005
     monkeypatch.setattr("fem_adhesion.curve.solve.solve", fail)
-    assert cli.main(["report", "--out", str(tmp_path / "a.html"), "--tabor", "2"]) == 1
+    assert cli.main(["report", "--html", str(tmp_path / "a.html"), "--tabor", "2"]) == 1
     assert "verdict: failed" in capsys.readouterr().out
     html = (tmp_path / "a.html").read_text()
     assert '<p class="verdict failed">' in html

@@ -114,7 +114,9 @@ def test_the_command_writes_what_it_found(curve, tmp_path, monkeypatch, capsys):
     assert "stable under fixed grips" in files[2].read_text()
 
 
-@pytest.mark.parametrize("option", [["--vtk", "x"], ["--beside", "morse:3"], ["--points", "9"], ["--stiffness", "1"]])
+@pytest.mark.parametrize(
+    "option", [["--vtk", "x"], ["--other-laws", "morse:3"], ["--points", "9"], ["--stiffness", "1"]]
+)
 def test_what_the_weak_form_has_not_is_refused(option, capsys):
     assert cli.main(["curve", "--tabor", "1", "--solver", "weak-form", *option]) == 2
     assert "the weak form gives points and events alone" in capsys.readouterr().err

@@ -98,9 +98,9 @@ def test_jumps_are_compared_where_all_laws_fold(collapsed):
 
 
 def test_a_body_with_a_length_is_refused_before_any_work():
-    with pytest.raises(InputError, match="beside with body = hemisphere, limit: a body and profile without R/eps"):
+    with pytest.raises(InputError, match="other_laws with body = hemisphere, limit: a body and profile without R/eps"):
         beside.require(Scene(1.0, body=Hemisphere(radius_ratio=100.0)), [Morse(3.0)])
-    with pytest.raises(InputError, match="beside = 6 laws, limit: 5; give fewer"):
+    with pytest.raises(InputError, match="other_laws = 6 laws, limit: 5; give fewer"):
         beside.require(Scene(1.0), [Morse(3.0)] * 6)
 
 
