@@ -52,7 +52,8 @@ def add_options(command: Parser) -> None:
     contact.add_argument("--counter-poisson", type=float, help="of the other body", metavar="NU")
     volts = "sensitivity of the detector, as 50nm/V, where the file of a maker lacks it"
     command.add_argument("--detector", help=volts, metavar="S")
-    models = "fitted beside the atlas: maugis-dugdale, jkr, dmt; all three unless given"
+    models = "fitted beside the atlas: maugis-dugdale, jkr, dmt, all three unless given; or by the solvers a law, a "
+    models += "profile or a body in one word, as morse:3, sphere, layer:500nm, hemisphere"
     command.add_argument("--models", nargs="+", help=models, metavar="MODEL")
     results = command.add_argument_group("results")
     add_files(results, json="what is found", plot="data, fit and contour")
@@ -95,13 +96,17 @@ def run(options: argparse.Namespace) -> int:
 
 def _fit_one(options: argparse.Namespace, reading: Mapping[str, float | None], given: Mapping[str, Any]) -> int:
     from fem_adhesion.common import style
+    from fem_adhesion.common.jobs import progress_bar
     from fem_adhesion.fitting import figure, terminal
     from fem_adhesion.fitting.measured import read
     from fem_adhesion.fitting.study import fit
 
     (path,), form = options.curves, style.require_suffix(options.plot) if options.plot else ""
     with all_written(json=options.json, plot=options.plot) as files:
-        found = fit(read(path, stiffness=reading["stiffness"], sensitivity=reading["sensitivity"]), **given)
+        with progress_bar() as step:
+            found = fit(
+                read(path, stiffness=reading["stiffness"], sensitivity=reading["sensitivity"]), **given, progress=step
+            )
         if "json" in files:
             json.dump(terminal.record(found, curve=path, **given), files["json"], indent=1, allow_nan=False)
         if "plot" in files:

@@ -9,26 +9,34 @@ and the first after a jump are left out: the spring flies there.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq, least_squares
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq, least_squares, minimize_scalar
+from scipy.special import ndtr
 from scipy.stats import chi2 as chi2_law
+from scipy.stats import norm
 
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.fitting.model import Apparatus, Branches, Other, Theory, recorded
 from halfspace.values import Array
 
 LEVEL = 0.95  # of all intervals
+NORMAL = float(norm.isf((1 - LEVEL) / 2))  # standard errors in half an interval
 BLIND = 1e6  # largest ratio of two standard errors
 FARTHEST = 12.0  # coordinates beyond which nothing is asked for: a factor of 1e5
 FEW = 5  # samples on either side of a division at least, of which a slope is known
+APART = math.log(3)  # of the Tabor parameters from which fits start
+NEARLY = 1.1  # chi square, in the least of those at these, up to which the least beside another one is looked for
+NEAR = 0.05  # of the distance between fits within and beyond a profile, to which its end is looked for
+NODES = (0.25, 0.5, 0.75)  # of the way from the best Tabor parameter to either end, where the profile is fitted
+FINE = 401  # places between these on which intervals are read off
+RANGE = 7.0  # logarithms beyond which an end is open: a factor of a thousand
 ROUNDS = 5  # of dividing runs and fitting; two are usual
-STEPS: Mapping[str, Any] = {"diff_step": 1e-4, "x_scale": 0.1, "xtol": 1e-5, "ftol": 1e-7, "max_nfev": 300}
-"""Of least squares: derivatives over 1e-4 see past the kinks between the places of a curve."""
+STEP, SHIFT = 1e-4, 0.01  # of derivatives by coordinates and ln tabor: they see past the kinks and errors of a curve
 
 
 @dataclass(frozen=True)
@@ -42,11 +50,12 @@ class Run:
 
 @dataclass(frozen=True)
 class Place:
-    """Travel in m at which the data jump "on" or "off", and its standard error."""
+    """Travel in m at which the data jump "on" or "off", its standard error, and whether that is of a uniform law."""
 
     jump: str
     travel: float
     error: float
+    is_uniform: bool = True
 
 
 @dataclass(frozen=True)
@@ -165,7 +174,7 @@ class Data:
             start, stop = run.samples.start, run.samples.stop
             parts = slice(start, start + i), slice(start + i, stop)
             runs += [Run(run.segment, branch, part) for branch, part in zip(names, parts, strict=True)]
-            places.append(Place("off" if run.segment else "on", float(between[i - 1]), error))
+            places.append(Place("off" if run.segment else "on", float(between[i - 1]), error, is_uniform=False))
         return replace(self, runs=runs, places=places)
 
 
@@ -179,11 +188,12 @@ SCALES = ("radius", "modulus", "work_of_adhesion", "spacing", "stiffness", "sens
 """Positive parameters: the fitter moves their logarithms."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Problem:
-    """Likelihood of an apparatus, as residuals whose squares sum up to -2 ln of it.
+    """Likelihood of an apparatus at a Tabor parameter, as residuals whose squares sum up to -2 ln of it.
 
-    `start` holds all parameters, `fitted` the names of those that are moved, `prior` what was known of some of them.
+    At a given Tabor parameter one curve of the theory serves, and what is fitted scales and shifts it; the spacing
+    follows. `start` holds all parameters, `fitted` the names of those that are moved, `prior` what was known of some.
     """
 
     theory: Theory
@@ -193,11 +203,20 @@ class Problem:
     fitted: tuple[str, ...]
     prior: Mapping[str, Measured]
     recorded_stiffness: float | None = None
+    log_tabor: float = 0.0
+    curve: Array = field(default_factory=lambda: np.empty((2, 0)))
+
+    def at(self, log_tabor: float, x: Array) -> Problem:
+        """The problem at another Tabor parameter, its curve that of the sizes at coordinates."""
+        moved = replace(self, log_tabor=log_tabor)
+        return replace(moved, curve=self.theory(self.other.units(moved.apparatus(x))))
 
     def apparatus(self, x: Array) -> Apparatus:
-        """Apparatus at the fitter's coordinates: logarithms, and lengths in spacings of the start."""
-        moved = {name: self.value(name, float(at)) for name, at in zip(self.fitted, x, strict=True)}
-        return replace(self.start, **moved)
+        """Apparatus at the fitter's coordinates: logarithms, and lengths in those of the start."""
+        moved = replace(
+            self.start, **{name: self.value(name, float(at)) for name, at in zip(self.fitted, x, strict=True)}
+        )
+        return replace(moved, spacing=self.other.units(moved).displacement / math.exp(self.log_tabor))
 
     def value(self, name: str, x: float) -> float:
         """Value at a coordinate."""
@@ -225,12 +244,11 @@ class Problem:
         return math.log(value / known) * known / error if name in SCALES else (value - known) / error
 
     def _unit(self, name: str) -> float:
-        units = self.other.units(self.start)
-        return units.approach + units.displacement if name == "contact_point" else 1 / self.start.stiffness
+        return self.other.units(self.start).displacement if name == "contact_point" else 1 / self.start.stiffness
 
     def branches(self, apparatus: Apparatus) -> Branches:
         """Branches as they are recorded."""
-        return recorded(self.theory, apparatus, self.other.units(apparatus), self.recorded_stiffness)
+        return recorded(self.curve, apparatus, self.other.units(apparatus), self.recorded_stiffness)
 
     def residuals(self, x: Array) -> Array:
         """Whitened residuals of the samples, then those of the jumps' places and of what was known before."""
@@ -241,30 +259,12 @@ class Problem:
         known = [self.departure(name, getattr(apparatus, name)) for name in self.prior]
         return np.concatenate([samples, places, known])
 
-    def __call__(self, x: Array) -> float:
-        """Sum of the squares."""
-        residuals = self.residuals(x)
-        return float(residuals @ residuals)
-
     def jacobian(self, x: Array) -> Array:
         """Derivatives of the residuals by the coordinates."""
-        return np.asarray(least_squares(self.residuals, x, diff_step=STEPS["diff_step"], max_nfev=1).jac)
+        here = self.residuals(x)
+        return np.column_stack([(self.residuals(x + step) - here) / STEP for step in STEP * np.eye(x.size)])
 
-    def best(self, x: Array, held: str | None = None) -> Best:
-        """Least squares from coordinates on, one of the parameters held or none."""
-        free = np.array([name != held for name in self.fitted])
-
-        def residuals(moved: Array) -> Array:
-            at = x.copy()
-            at[free] = moved
-            return self.residuals(at)
-
-        found = least_squares(residuals, x[free], method="lm", **STEPS)
-        there = x.copy()
-        there[free] = found.x
-        return Best(self, self, there, 2 * float(found.cost), np.asarray(found.jac))
-
-    def settled(self, x: Array, held: str | None = None, *, loose: bool = False) -> Best:
+    def settled(self, x: Array, *, loose: bool = False) -> Best:
         """Least squares where runs without a jump in the data are divided as the model has it; see `Data.divided`.
 
         If `loose`, the coordinates are a first guess, and the samples alone decide on the first division.
@@ -272,124 +272,239 @@ class Problem:
         runs = self.data.runs
         for i in range(ROUNDS):
             divided = self.data.divided(self.branches(self.apparatus(x)), loose=loose and not i)
-            found = replace(replace(self, data=divided).best(x, held), asked=self)
+            problem = replace(self, data=divided)
+            found = least_squares(
+                problem.residuals, x, problem.jacobian, method="lm", x_scale=0.1, xtol=1e-5, ftol=1e-7, max_nfev=100
+            )
+            x = found.x
             if runs == divided.runs:
                 break
-            x, runs = found.x, divided.runs
-        return found
+            runs = divided.runs
+        return Best(problem, x, 2 * float(found.cost), np.asarray(found.jac))
 
 
 @dataclass(frozen=True, eq=False)
 class Best:
-    """Where the likelihood is greatest: coordinates x, -2 ln of it, and the Jacobian of the residuals.
+    """Where the likelihood is greatest at a Tabor parameter: coordinates x, -2 ln of it, and the Jacobian there.
 
-    `asked` is the problem with the runs of the data, `problem` that with the runs as the fit divides them.
+    `problem` has the runs as the fit divides them.
     """
 
     problem: Problem
-    asked: Problem
     x: Array
     chi2: float
     jacobian: Array
 
-    @property
+    @cached_property
     def apparatus(self) -> Apparatus:
         """What was found."""
         return self.problem.apparatus(self.x)
 
     @property
+    def tabor(self) -> float:
+        """Tabor parameter."""
+        return math.exp(self.problem.log_tabor)
+
+    @property
     def degrees(self) -> int:
         """Degrees of freedom, the coefficients of the baseline taken off."""
-        return int(len(self.jacobian) - self.problem.data.baseline.shape[1] - self.x.size)
+        return int(len(self.jacobian) - self.problem.data.baseline.shape[1] - self.x.size - 1)
 
     @property
     def scale(self) -> float:
         """Chi square per degree of freedom, or 1 if that is less: intervals grow by its root, as a misfit demands."""
         return max(1.0, self.chi2 / self.degrees)
 
-    def error(self, name: str) -> float:
-        """Standard error of a parameter's coordinate, by the curvature."""
-        i = self.problem.fitted.index(name)
-        return math.sqrt(self.scale * self.covariance[i, i])
-
     @cached_property
     def covariance(self) -> Array:
-        """Inverse of the curvature of the likelihood, of the coordinates where the noise is the baseline's.
+        """Of the coordinates at this Tabor parameter, where the noise is the baseline's."""
+        return inverse(self.jacobian)
 
-        What the data do not show at all has a standard error of `BLIND` times that of what they show best.
-        """
-        _, sizes, directions = np.linalg.svd(self.jacobian, full_matrices=False)
-        return np.asarray((directions.T / np.maximum(sizes, sizes[0] / BLIND) ** 2) @ directions)
+    @cached_property
+    def whole(self) -> Array:
+        """Jacobian by the coordinates and, last, ln tabor."""
+        shifted = self.problem.at(self.problem.log_tabor + SHIFT, self.x).residuals(self.x)
+        return np.column_stack([self.jacobian, (shifted - self.problem.residuals(self.x)) / SHIFT])
 
-    def interval(
-        self, name: str, limits: tuple[float, float], others: Sequence[Best] = ()
-    ) -> tuple[float | None, float | None]:
-        """Ends of a parameter's interval by the profile likelihood, in its coordinate; None if beyond the limits.
+    @property
+    def tabor_error(self) -> float:
+        """Standard error of ln tabor by the curvature, within what is of use for a step."""
+        return float(np.clip(math.sqrt(self.scale * inverse(self.whole)[-1, -1]), 1e-4, APART / 2))
 
-        Other fits that are likely enough show how far the interval reaches at least, whatever lies between.
-        MINOS was tried in the place of this: of 24 curves it gave up an end of five, where the likelihood has a kink
-        or a limit, and had the same ends to three digits elsewhere.
-        """
-        i, rise = self.problem.fitted.index(name), self.scale * float(chi2_law.ppf(LEVEL, 1))
-        seeds = [
-            np.array([self.problem.coordinate(key, getattr(one.apparatus, key)) for key in self.problem.fitted])
-            for one in others
-            if one.chi2 < self.chi2 + rise
-        ]
+    def coordinate(self, name: str) -> float:
+        """Coordinate of a parameter; of the spacing its logarithm."""
+        return math.log(self.apparatus.spacing) if name == "spacing" else float(self.x[self.problem.fitted.index(name)])
+
+    def gradient(self, name: str) -> Array:
+        """Derivatives of a parameter's coordinate by all coordinates and ln tabor."""
+        if name != "spacing":
+            return np.append(np.array([each == name for each in self.problem.fitted], float), 0.0)
+        moved = [self.problem.apparatus(self.x + step).spacing for step in STEP * np.eye(self.x.size)]
+        return np.append(np.log(np.array(moved) / self.apparatus.spacing) / STEP, -1.0)
+
+    def half_width(self, name: str, sharper: Array | float = 1.0, exact: str = "") -> float:
+        """Half of a parameter's interval by the curvature, with residuals so many times as sharp, or one more exact."""
+        kept = np.array([each != exact for each in (*self.problem.fitted, "")])
+        jacobian = (self.whole.T * sharper).T[:, kept]
+        gradient = self.gradient(name)[kept]
+        return NORMAL * math.sqrt(self.scale * float(gradient @ inverse(jacobian) @ gradient))
+
+
+def inverse(jacobian: Array) -> Array:
+    """Covariance of coordinates from the Jacobian of the residuals.
+
+    What the data do not show at all has a standard error of `BLIND` times that of what they show best.
+    """
+    _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
+    return np.asarray((directions.T / np.maximum(sizes, sizes[0] / BLIND) ** 2) @ directions)
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Least chi square at each Tabor parameter: the best fit, and fits in order as far as they are likely.
+
+    A parameter's interval holds all its values for which some Tabor parameter has a chi square that is low enough; at
+    one Tabor parameter the chi square is a parabola of the others. MINOS of all at once was tried in the place of this:
+    of 24 curves it gave up an end of five, where the likelihood has a kink or a limit.
+
+    Attributes
+    ----------
+    ends : tuple of bool
+        Whether the least and the largest Tabor parameter that the theory knows are likely.
+    """
+
+    best: Best
+    fits: tuple[Best, ...]
+    ends: tuple[bool, bool]
+
+    def region(self, name: str, rise: float) -> tuple[Array, Array, Array]:
+        """Values of ln tabor up to a rise of chi square, and the ends of a parameter's coordinate at each."""
+        rows = []
+        for one in self.fits:
+            gradient = one.gradient(name)[:-1]
+            rows.append((one.chi2 - self.best.chi2, one.coordinate(name), gradient @ one.covariance @ gradient))
+        at, table = np.array([one.problem.log_tabor for one in self.fits]), np.array(rows)
+        if len(at) > 1:
+            fine = np.unique(np.append(np.linspace(at[0], at[-1], FINE), at))
+            at, table = fine, PchipInterpolator(at, table)(fine)
+        above, middle, variance = table[table[:, 0] <= rise].T
+        half = np.sqrt((rise - above) * variance)
+        return at[table[:, 0] <= rise], middle - half, middle + half
+
+    def interval(self, name: str) -> tuple[float | None, float | None]:
+        """Ends of a parameter's interval in SI; None if the curve leaves one open."""
+        _, lows, highs = self.region(name, self.best.scale * self._factor(name) ** 2)
+        ends, middle = (float(lows.min()), float(highs.max())), self.best.coordinate(name)
+        if name == "spacing":  # the smaller the Tabor parameter, the larger is the spacing
+            rigid, soft = self.ends
+            return None if soft else math.exp(ends[0]), None if rigid else math.exp(ends[1])
+        known = [name not in SCALES or abs(end - middle) < RANGE for end in ends]
         low, high = (
-            self._end(
-                name, side, side * (limit - float(self.x[i])), [x for x in seeds if side * (x[i] - self.x[i]) > 0]
-            )
-            for side, limit in zip((-1, 1), limits, strict=True)
+            self.best.problem.value(name, end) if is_known else None for end, is_known in zip(ends, known, strict=True)
         )
         return low, high
 
-    def _end(self, name: str, side: int, limit: float, seeds: Sequence[Array]) -> float | None:
-        """Coordinate where the profile has risen by the quantile, each fit from the nearest one before."""
-        i, rise = self.problem.fitted.index(name), self.scale * float(chi2_law.ppf(LEVEL, 1))
-        known = {side * float(x[i] - self.x[i]): (0.0, x) for x in (self.x, *seeds)}
-        along = side * self.covariance[:, i] / self.covariance[i, i]
+    def _factor(self, name: str) -> float:
+        """Standard errors in half an interval: 1.96 of a normal error, 1.65 of a uniform one, as a place has.
 
-        def excess(t: float) -> float:
-            if t not in known or not known[t][0]:
-                near = min(known, key=lambda other: abs(other - t))
-                starts = [known[near][1].copy(), known[near][1] + (t - near) * along]
-                starts[0][i] = self.x[i] + side * t
-                found = self.asked.settled(min(starts, key=self.asked), held=name)
-                known[t] = found.chi2 - self.chi2 - rise, found.x
-            return known[t][0]
-
-        near = max(known)
-        if near >= limit:
-            return None
-        known[near] = min(known[near][0], -1e-9), known[near][1]
-        step = min(2 * self.error(name), 1.0)
-        far = min(near + step, limit)
-        while excess(far) < 0:
-            if far >= limit:
-                return None
-            step *= 2
-            near, far = far, min(far + step, limit)
-        return float(self.x[i] + side * brentq(excess, near, far, xtol=1e-2 * (far - near), rtol=1e-3))
-
-    def contour(self, names: tuple[str, str], ends: tuple[float, float], count: int = 5) -> Array:
-        """Contour (2, n) of a pair: the second name's values between the ends, the first's where the profile says.
-
-        At each value of the second the first is taken to be normal about its best value.
+        Thousands of samples make a normal error, but the share of a place in a parameter's error may be all of it.
         """
-        i, j = (self.problem.fitted.index(name) for name in names)
-        level = self.scale * float(chi2_law.ppf(LEVEL, 2))
-        points = list[tuple[float, float, float]]()
-        for end in ends:
-            x = self.x
-            for value in np.linspace(self.x[j], end, count):
-                x = x.copy()
-                x[j] = value
-                found = self.asked.settled(x, held=names[1])
-                x, rest = found.x, level - (found.chi2 - self.chi2)
-                if rest > 0:
-                    k = i - (i > j)
-                    half = math.sqrt(rest * found.covariance[k, k])
-                    points.append((float(value), x[i] - half, x[i] + half))
-        value, low, high = np.array(sorted(points)).T
-        return np.array([np.append(low, high[::-1]), np.append(value, value[::-1])])
+        influence = self.best.gradient(name) @ np.linalg.pinv(self.best.whole)
+        first = len(influence) - len(self.best.problem.data.places) - len(self.best.problem.prior)
+        uniform = [at.is_uniform for at in self.best.problem.data.places]
+        shares = (influence**2 / np.sum(influence**2))[first : first + len(uniform)] * uniform
+        u, weights = np.polynomial.legendre.leggauss(32)
+        parts = [math.sqrt(3 * share) * u for share in (*shares, 0.0, 0.0)[:2]]
+        sums, weight = np.add.outer(*parts), np.multiply.outer(weights, weights) / 4
+        rest = math.sqrt(max(1 - float(sum(shares)), 1e-3))
+        return float(brentq(lambda t: np.sum(weight * (2 * ndtr((t - sums) / rest) - 1)) - LEVEL, 1.0, 2.5))
+
+    def contour(self) -> Array:
+        """Contour (2, n) of work of adhesion and spacing in SI: at each Tabor parameter the ends of the first."""
+        best, level = self.best, self.best.scale * float(chi2_law.ppf(LEVEL, 2))
+        _, low, high = self.region("work_of_adhesion", level)
+        _, small, large = self.region("spacing", level)
+        works = [best.problem.value("work_of_adhesion", x) for x in (*low, *high[::-1])]
+        return np.array([works, np.exp(np.append(small, large[::-1]))])
+
+
+def profiled(
+    problem: Problem,
+    tabors: Sequence[float],
+    limits: tuple[float, float],
+    first: Callable[[Problem], Array],
+    is_likely: Callable[[Best], bool],
+) -> Profile:
+    """Profile that starts from some Tabor parameters, and goes on within limits until the least is between two.
+
+    `first` gives coordinates to begin with, `is_likely` says of fits at the first Tabor parameters which to keep.
+    """
+    every = dict[float, Best]()
+    for at in (round(math.log(tabor), 9) for tabor in tabors):
+        here = problem.at(at, np.zeros(len(problem.fitted)))
+        every[at] = here.settled(first(here), loose=True)
+    fits = {at: one for at, one in every.items() if is_likely(one)} or every
+    least, most = (round(math.log(limit), 9) for limit in limits)
+    scan = Scan(problem, (least, most), fits)
+    if least == most:
+        return Profile(scan.best, (scan.best,), (False, False))
+    scan.minimise()
+    is_open = scan.follow(-1), scan.follow(1)
+    order = sorted(scan.fits)
+    likely = [i for i, at in enumerate(order) if scan.rise(at) < 0]
+    around = order[max(likely[0] - 1, 0) : likely[-1] + 2]
+    return Profile(scan.best, tuple(scan.fits[at] for at in around), is_open)
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """Fits by ln tabor between limits, each made when it is asked for, from the nearest one that is there."""
+
+    problem: Problem
+    limits: tuple[float, float]
+    fits: dict[float, Best]
+
+    def chi2(self, at: float) -> float:
+        """Least chi square."""
+        at = round(float(np.clip(at, *self.limits)), 9)
+        if at not in self.fits:
+            near = self.fits[min(self.fits, key=lambda other: abs(other - at))]
+            self.fits[at] = self.problem.at(at, near.x).settled(near.x)
+        return self.fits[at].chi2
+
+    def rise(self, at: float) -> float:
+        """Chi square over the best one, less that at which a pair of parameters is unlikely."""
+        return self.chi2(at) - self.best.chi2 - self.best.scale * float(chi2_law.ppf(LEVEL, 2))
+
+    @property
+    def best(self) -> Best:
+        """The best fit."""
+        return min(self.fits.values(), key=lambda one: one.chi2)
+
+    def minimise(self) -> None:
+        """Go on until the best fit is between two others, or at a limit; look for the least beside each of the best."""
+        while (low := self.best.problem.log_tabor) in (min(self.fits), max(self.fits)) and low not in self.limits:
+            self.chi2(low + (APART if low == max(self.fits) else -APART))
+        grid = sorted(self.fits)
+        for before, at, after in zip(grid, grid[1:], grid[2:], strict=False):
+            if self.chi2(at) <= min(self.chi2(before), self.chi2(after), NEARLY * self.best.chi2):
+                near = 0.1 * self.fits[at].tabor_error
+                minimize_scalar(self.chi2, bounds=(before, after), method="bounded", options={"xatol": near})
+
+    def follow(self, side: int) -> bool:
+        """Fit down and up to where the profile has risen, on the side of smaller (-1) or larger ones; False if found.
+
+        Whatever lies between, a profile reaches as far as its farthest fit that is likely enough.
+        """
+        middle, limit, step = self.best.problem.log_tabor, self.limits[side > 0], 2.5 * self.best.tabor_error
+        near = far = max((at for at in self.fits if self.rise(at) < 0), key=lambda at: side * at)
+        while self.rise(far) < 0 and far != limit:
+            beyond = [at for at in self.fits if side * (at - far) > 0]
+            near, far = far, min((*beyond, limit, far + side * step), key=lambda at: side * at)
+            step *= 2
+        is_open = self.rise(far) < 0
+        if not is_open:
+            far = float(brentq(self.rise, near, far, xtol=NEAR * abs(far - near)))
+        for part in NODES:
+            self.chi2(middle + part * (far - middle))
+        return is_open

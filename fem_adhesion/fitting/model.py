@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -30,22 +29,22 @@ BULGE = 3 * np.pi**2 / (2.5 * 1.4**3.5)
 SOFTEST = 1e4  # Tabor parameter from which on curves are JKR's but for a hundredth of tabor eps
 WIDEST = 25.0  # contact radius in beta to which the compression is continued: a load of 2e4 R dgamma
 
-Theory = Callable[[float], Array]
-"""Approach in eps and load in R dgamma, (2, n), from separation to compression, at a Tabor parameter."""
+Theory = Callable[[Units], Array]
+"""Approach in eps and load in R dgamma, (2, n), from separation to compression, of a contact."""
 
 
-@lru_cache(maxsize=64)  # a fit's gradient asks for the same one with other contact points and scales
-def by_atlas(tabor: float) -> Array:
+def by_atlas(units: Units) -> Array:
     """Curve of the atlas, continued: the attraction as h^-2, the compression by Hertz with a constant tension.
 
     Both meet the atlas's end, the latter with its slope: 5 R dgamma and more, where Maugis's theory and it are apart
     by 0.1 tabor eps at most up to 100 R dgamma. Beyond the atlas's Tabor parameters the contact is JKR's, and before
     it the far attraction raises a bulge, alpha* = 1 - y - B tabor^(3/2) y^(-5/2) at a gap of y eps.
     """
+    tabor = max(units.tabor, LEAST)
     if tabor > MOST:
         bulge = BULGE * tabor**1.5
         y = np.geomspace(FARTHEST * (1 + tabor), 0.5 * (2.5 * bulge) ** (2 / 7), 4 * BEYOND)
-        return np.hstack([[1 - y - bulge * y**-2.5, -8 * np.pi / 3 * y**-2], by_jkr(tabor)[:, 2 * BEYOND + 1 :]])
+        return np.hstack([[1 - y - bulge * y**-2.5, -8 * np.pi / 3 * y**-2], by_jkr(units)[:, 2 * BEYOND + 1 :]])
     curve = atlas.table(tabor, COUNT)
     (first, pull), (last, push) = curve[:, 0], curve[:, -1]
     h = (1 - first) * (FARTHEST * (1 + tabor) / (1 - first)) ** EVEN[:0:-1]
@@ -57,26 +56,24 @@ def by_atlas(tabor: float) -> Array:
     return np.hstack([[1 - h, pull * ((1 - first) / h) ** 2], curve, [alpha, load]])
 
 
-@lru_cache(maxsize=64)
-def by_jkr(tabor: float) -> Array:
+def by_jkr(units: Units) -> Array:
     """JKR's curve: no attraction before contact, so that eps is but the unit of the approach."""
-    a = WIDEST * np.linspace(0.0, 1.0, 2 * COUNT) ** 2
+    tabor, a = units.tabor, WIDEST * np.linspace(0.0, 1.0, 2 * COUNT) ** 2
     return np.hstack(
         [_apart(tabor, 0.0, np.zeros_like), [closed_forms.jkr_approach(a, tabor), closed_forms.jkr_load(a)]]
     )
 
 
-@lru_cache(maxsize=64)
-def by_dmt(tabor: float) -> Array:
+def by_dmt(units: Units) -> Array:
     """A rigid sphere until it touches, then Hertz's contact under a constant tension (DMT-M)."""
+    tabor = units.tabor
     alpha = tabor * (WIDEST * np.linspace(0.0, 1.0, 2 * COUNT)[1:] ** 2) ** 2
     return np.hstack([_apart(tabor, 0.0, closed_forms.bradley_load), [alpha, dmt.maugis_load(alpha, tabor)]])
 
 
-@lru_cache(maxsize=64)
-def by_maugis(tabor: float) -> Array:
+def by_maugis(units: Units) -> Array:
     """Maugis's curve with the largest tension of the 3-9 law."""
-    theory = MaugisDugdale.matched(tabor)
+    tabor, theory = units.tabor, MaugisDugdale.matched(units.tabor)
     c = theory.touching_radius * np.linspace(0.0, 1.0, BEYOND)
     disc = theory.separated_approach(c), theory.separated_load(c)
     a = WIDEST * np.linspace(1e-3, 1.0, COUNT) ** 2
@@ -189,16 +186,13 @@ class Other:
         return Units(radius, modulus, apparatus.work_of_adhesion, apparatus.spacing)
 
 
-def recorded(theory: Theory, apparatus: Apparatus, units: Units, nominal: float | None = None) -> Branches:
-    """Branches as an apparatus records them: travels in m and forces in N, offset and drift left out.
+def recorded(curve: Array, apparatus: Apparatus, units: Units, nominal: float | None = None) -> Branches:
+    """Branches of a theory's curve as an apparatus records it: travels in m, forces in N, without offset and drift.
 
-    A force that was computed from a deflection by a nominal stiffness is wrong as that is. Outside
-    the Tabor parameters of both limits the curve is the nearest's: in eps of the rigid one, in tabor eps of JKR's.
+    A force that was computed from a deflection by a nominal stiffness is wrong as that is.
     """
     compliance = 1 / apparatus.stiffness + apparatus.compliance
-    curve = theory(min(max(units.tabor, LEAST), SOFTEST))
-    beyond = np.array([[max(units.tabor / SOFTEST, 1.0)], [1.0]])
-    found = branches(beyond * curve, 1 / (compliance * units.stiffness))
+    found = branches(curve, 1 / (compliance * units.stiffness))
     force = units.load / apparatus.sensitivity * (nominal / apparatus.stiffness if nominal else 1.0)
     scale, origin = np.array([[units.spacing], [force]]), np.array([[apparatus.contact_point], [0.0]])
     on, off = (apparatus.contact_point + units.spacing * at for at in (found.on, found.off))

@@ -11,22 +11,23 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import chi2, norm
 
+from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.common.numbers import Measured
-from fem_adhesion.fitting.inference import LEVEL, SCALES, Best, Data, Place, Problem, Run
+from fem_adhesion.fitting.inference import NORMAL, SCALES, Best, Data, Place, Problem, Profile, Run, profiled
 from fem_adhesion.fitting.measured import APPROACH, BASE, ForceCurve, read
-from fem_adhesion.fitting.model import SOFTEST, THEORIES, Apparatus, Other
+from fem_adhesion.fitting.model import SOFTEST, THEORIES, Apparatus, Other, Theory, by_atlas, by_jkr
 from fem_adhesion.fitting.prepare import Prepared, prepare
+from fem_adhesion.fitting.traced import Traced, kind_of
 from halfspace.atlas.series import LEAST
-from halfspace.errors import InputError
-from halfspace.limits import require_one_of, require_poisson
+from halfspace.errors import InputError, Unsolved, tried
+from halfspace.limits import require_poisson
 from halfspace.values import Array
 
-TABORS = np.geomspace(LEAST, SOFTEST, 13)  # from which fits start; three times the next
-NEARLY = 1.1  # chi square, in the least of those at fixed Tabor parameters, up to which a free fit starts from there
-SOFT = 20.0  # Tabor parameter from which on fits end in JKR's, wherever they start
+TABORS = tuple(np.geomspace(LEAST, SOFTEST, 13))  # from which fits start; three times the next
+TRACED = LEAST, 100.0  # least and largest Tabor parameter to which traced models are followed
 FAR_OFF = 3.0  # times the measured pull-off force that a fit's may be
 STRAYED = 5.0  # standard errors from what was known at which a quantity makes up for a wrong model, and is held
-COARSE = 3  # every third serves the models beside the atlas, which end anywhere
+CLEAR = 6.0  # difference of Akaike's criterion from which one model is clearly preferred: a likelihood ratio of 20
 ATLAS = "atlas"
 UNITS: Mapping[str, str] = {
     "work_of_adhesion": "J/m^2",
@@ -39,10 +40,7 @@ UNITS: Mapping[str, str] = {
     "compliance": "m/N",
 }
 """Parameters and their units in SI."""
-RANGE = 7.0  # coordinates to which an end is looked for: a factor of a thousand
-EXACT = float(norm.isf((1 - LEVEL) / 2))  # standard errors in half an interval
-NORMAL = float(norm.isf(0.25))  # median size of a normal error, in its standard deviation
-WIDER = 1.24  # ends of a pair's contour, in those of one of them: the root of both quantiles' ratio
+MEDIAN = float(norm.isf(0.25))  # size of a normal error, in its standard deviation
 WHITE = 1e-3  # chance below which residuals are no noise
 
 
@@ -71,6 +69,8 @@ class Candidate:
         Sum of the squared residuals in standard deviations of the noise.
     criterion : float
         Akaike's, chi2 + 2 x parameters, over `Best.scale` of the best model: less by 2 is e times as likely.
+    values : mapping of str to Value
+        Work of adhesion, spacing and what else was fitted.
     """
 
     name: str
@@ -78,6 +78,7 @@ class Candidate:
     parameters: int
     criterion: float
     apparatus: Apparatus
+    values: Mapping[str, Value]
 
 
 @dataclass(frozen=True)
@@ -101,37 +102,37 @@ class Fit:
         The curve and what was found in it without a model.
     values : mapping of str to Value
         Work of adhesion, spacing, contact point and what else was fitted.
-    best : Best
-        The fit itself: its problem with data and theory, coordinates, Jacobian.
+    profile : Profile
+        The fits of the atlas at each Tabor parameter that is likely, with their problems, coordinates, Jacobians.
     candidates : tuple of Candidate
         All models, the most likely first.
     branches : tuple of Branch
         Residuals by branch.
+    unsolved : mapping of str to str
+        Why a model could not be fitted.
     """
 
     prepared: Prepared
     values: Mapping[str, Value]
-    best: Best
+    profile: Profile
     candidates: tuple[Candidate, ...]
     branches: tuple[Branch, ...]
+    unsolved: Mapping[str, str]
 
     @property
     def model(self) -> str:
         """The most likely model."""
         return self.candidates[0].name
 
+    @property
+    def best(self) -> Best:
+        """The fit of the atlas: its problem with data and theory, coordinates, Jacobian."""
+        return self.profile.best
+
     @cached_property
     def contour(self) -> Array:
         """Contour (2, n) of work of adhesion and spacing at 95 %, in SI, computed when asked for."""
-        problem, spacing = self.best.problem, self.values["spacing"]
-        middle = problem.coordinate("spacing", spacing.value)
-        low, high = (
-            limit if end is None else middle + WIDER * (problem.coordinate("spacing", end) - middle)
-            for limit, end in zip(_limits(self.best), (spacing.low, spacing.high), strict=True)
-        )
-        names = "work_of_adhesion", "spacing"
-        contour = self.best.contour(names, (min(low, middle), max(high, middle)))
-        return np.array([[problem.value(name, x) for x in row] for name, row in zip(names, contour, strict=True)])
+        return self.profile.contour()
 
     @property
     def misfit(self) -> bool:
@@ -156,6 +157,7 @@ def fit(
     counter_poisson: float | None = None,
     counter_radius: float | None = None,
     models: Sequence[str] = ("maugis-dugdale", "jkr", "dmt"),
+    progress: Progress = unheard,
 ) -> Fit:
     """Fit work of adhesion and spacing to a measured curve, as an apparatus records the contact.
 
@@ -171,7 +173,10 @@ def fit(
     counter_modulus, counter_poisson, counter_radius : float, optional
         Those of the other body, which is rigid and flat unless given.
     models : sequence of str
-        Fitted beside the atlas: names in `fem_adhesion.fitting.model.THEORIES`.
+        Fitted beside the atlas: names in `fem_adhesion.fitting.model.THEORIES`, or a law, a profile or a body in one
+        word, as `morse:3`, whose curves are traced at some twenty Tabor parameters.
+    progress : callable
+        Called with the model under way, how many are done, and of how many.
 
     Raises
     ------
@@ -197,13 +202,34 @@ def fit(
         math.inf if counter_radius is None else counter_radius,
     )
     for name in models:
-        require_one_of(name, "model", tuple(THEORIES))
+        if name not in THEORIES:
+            kind_of(name)
     prepared = prepare(curve)
-    every = {name: best_of(name, prepared, given, other) for name in dict.fromkeys((ATLAS, *models))}
-    found = {name: best for name, (best, *_) in every.items()}
-    best, *others = every[ATLAS]
-    values = _values(best, others)
-    return Fit(prepared, values, best, _candidates(found), _branches(best))
+    loads = 2 * 1.75 * math.pi * float(np.max(curve.force - prepared.background)) / prepared.pull_off
+    named_models = {
+        name: THEORIES.get(name) or Traced(name, other.poisson, max(loads, 5.0)) for name in (ATLAS, *models)
+    }
+    begin, found, unsolved = in_turn(progress, len(named_models)), dict[str, Profile](), dict[str, str]()
+    for name, theory in named_models.items():
+        if isinstance(theory, Traced):
+            theory.scene(other.units(found[ATLAS].best.apparatus))  # refuse a word before any work
+        begin(name)
+        starts = _starts(theory, found)
+        profile = tried(profile_of, theory, *starts, prepared, given, other, refusals=True)
+        if isinstance(profile, Unsolved):
+            unsolved[name] = profile.reason
+        else:
+            found[name] = profile
+    atlas = found[ATLAS]
+    return Fit(prepared, values_of(atlas), atlas, _candidates(found), _branches(atlas.best), unsolved)
+
+
+def _starts(theory: Theory, found: Mapping[str, Profile]) -> tuple[Sequence[float], tuple[float, float]]:
+    """Tabor parameters from which a model's fits start, and the limits to which they go."""
+    if isinstance(theory, Traced):
+        return [found[ATLAS].best.tabor], TRACED
+    tabors = TABORS if theory is by_atlas else TABORS[-1:] if theory is by_jkr else TABORS[::2]
+    return tabors, (tabors[0], tabors[-1])
 
 
 def data_of(prepared: Prepared, stiffness: float) -> Data:
@@ -228,66 +254,58 @@ def data_of(prepared: Prepared, stiffness: float) -> Data:
     noise = max(prepared.noise, 1e-6 * prepared.pull_off)  # a curve without noise is one of a millionth
     degree = 2 if any(line.curvature for line in prepared.baseline.values()) else 1
     steady = np.diff(curve.travel[curve.approach], 2)  # of a steady travel these are its errors' alone
-    jitter = float(np.median(np.abs(steady))) / NORMAL / math.sqrt(6)
+    jitter = float(np.median(np.abs(steady))) / MEDIAN / math.sqrt(6)
     periods = tuple(line.period if line.amplitude else 0.0 for line in prepared.baseline.values())
     forms = degree, jitter, periods, prepared.contact
     return Data(travel, curve.force, tuple(runs), tuple(places), noise, prepared.correlation, *forms)
 
 
-def best_of(
-    name: str, prepared: Prepared, given: Mapping[str, Measured], other: Other, held: Sequence[str] = ()
-) -> list[Best]:
-    """Best fit of a model, then all others, which start at Tabor parameters; JKR's has no spacing to fit.
+def profile_of(
+    theory: Theory,
+    tabors: Sequence[float],
+    limits: tuple[float, float],
+    prepared: Prepared,
+    given: Mapping[str, Measured],
+    other: Other,
+    held: Sequence[str] = (),
+) -> Profile:
+    """Profile of a model, started from Tabor parameters.
 
     Quantities that stray from what is known are held there: thousands of residuals of a wrong model outweigh it.
     """
-    found = _fits(name, prepared, given, other, held)
-    problem, apparatus = found[0].problem, found[0].apparatus
-    known = [key for key in problem.prior if key in SCALES]
-    strayed = [key for key in known if abs(problem.departure(key, getattr(apparatus, key))) > STRAYED]
-    return best_of(name, prepared, given, other, (*held, *strayed)) if strayed else found
-
-
-def _fits(
-    name: str, prepared: Prepared, given: Mapping[str, Measured], other: Other, held: Sequence[str]
-) -> list[Best]:
     prior = {key: each for key, each in given.items() if 0 < each.deviation < math.inf}
-    moved = tuple(key for key, each in given.items() if each.deviation > 0 and key not in held)
-    nominal = given["stiffness"].value if prepared.curve.deflection_given else None
-    data = data_of(prepared, given["stiffness"].value)
+    moved = [key for key, each in given.items() if each.deviation > 0 and key not in held]
     start = {key: each.value for key, each in given.items()}
     if math.isinf(given["modulus"].deviation):
         start["modulus"] = _hertz(prepared, start, other)
     work = prepared.pull_off * start["sensitivity"] / (1.75 * math.pi * start["radius"])
-    fitted = ("work_of_adhesion", "contact_point", *moved)
-    found = list[Best]()
-    starts = TABORS if name == ATLAS else TABORS[-1::-COARSE][: 1 if name == "jkr" else None]
-    for tabor in starts:
-        apparatus = Apparatus(**start, work_of_adhesion=work, spacing=1.0, contact_point=0.0)
-        spacing = other.units(apparatus).tabor / float(tabor)
-        problem = Problem(THEORIES[name], other, data, replace(apparatus, spacing=spacing), fitted, prior, nominal)
-        problem = replace(problem, start=replace(problem.start, contact_point=_first_contact(problem, prepared)))
-        found.append(problem.settled(np.zeros(len(fitted)), loose=True))
-    found = [one for one in found if _has_pull_off(one, prepared)] or found
-    found.sort(key=lambda one: one.chi2)
-    if name == "jkr":
-        return found
-    free = list[Best]()
-    near = [one for one in found[1:] if one.chi2 < NEARLY * found[0].chi2 and _tabor(one) < SOFT]
-    for one in [found[0], *(near if name == ATLAS else [])]:
-        named = ("work_of_adhesion", "spacing", *fitted[1:])
-        free.append(replace(one.asked, start=one.apparatus, fitted=named).settled(np.zeros(len(named))))
-    return sorted([*free, *found], key=lambda one: (one not in free, one.chi2))
+    problem = Problem(
+        theory,
+        other,
+        data_of(prepared, given["stiffness"].value),
+        Apparatus(**start, work_of_adhesion=work, spacing=1.0, contact_point=0.0),
+        ("work_of_adhesion", "contact_point", *moved),
+        prior,
+        given["stiffness"].value if prepared.curve.deflection_given else None,
+    )
 
+    def first(problem: Problem) -> Array:
+        """Coordinates of the contact point that the jumps or the force say; all others as given."""
+        x = np.zeros(len(problem.fitted))
+        x[1] = problem.coordinate("contact_point", _first_contact(problem, prepared))
+        return x
 
-def _tabor(one: Best) -> float:
-    return one.problem.other.units(one.apparatus).tabor
+    def has_pull_off(one: Best) -> bool:
+        """Whether a fit's pull-off force is near the measured one: a contact point far off makes a minimum without."""
+        load = other.units(one.apparatus).load / one.apparatus.sensitivity
+        return 1 / FAR_OFF < load * 1.75 * math.pi / prepared.pull_off < FAR_OFF
 
-
-def _has_pull_off(one: Best, prepared: Prepared) -> bool:
-    """Whether a fit's pull-off force is near the measured one: a contact point far off makes a minimum without."""
-    load = one.problem.other.units(one.apparatus).load / one.apparatus.sensitivity
-    return 1 / FAR_OFF < load * 1.75 * math.pi / prepared.pull_off < FAR_OFF
+    found = profiled(problem, tabors, limits, first, has_pull_off)
+    known = [key for key in prior if key in SCALES and key not in held]
+    strayed = [key for key in known if abs(problem.departure(key, getattr(found.best.apparatus, key))) > STRAYED]
+    if strayed:
+        return profile_of(theory, tabors, limits, prepared, given, other, (*held, *strayed))
+    return found
 
 
 def _hertz(prepared: Prepared, start: Mapping[str, float], other: Other) -> float:
@@ -303,7 +321,7 @@ def _hertz(prepared: Prepared, start: Mapping[str, float], other: Other) -> floa
 
 def _first_contact(problem: Problem, prepared: Prepared) -> float:
     """Contact point at which the model's jumps are where the data's are; without any, as its force says."""
-    found = problem.branches(problem.start)
+    found = problem.branches(problem.apparatus(np.zeros(len(problem.fitted))))
     if problem.data.places:
         return float(np.mean([at.travel - found.place(int(at.jump == "off")) for at in problem.data.places]))
     base, force = found.contact
@@ -311,18 +329,15 @@ def _first_contact(problem: Problem, prepared: Prepared) -> float:
     return prepared.contact - float(np.interp(0.0, force[least:], base[least:]))
 
 
-def _values(best: Best, others: Sequence[Best]) -> dict[str, Value]:
-    """Values with intervals in SI."""
-    problem, found = best.problem, dict[str, Value]()
-    for i, name in enumerate(problem.fitted):
-        at, error = float(best.x[i]), EXACT * best.error(name)
-        ends: tuple[float | None, float | None] = (at - error, at + error)
-        if name == "spacing":
-            ends = best.interval(name, _limits(best), others)
-        elif name != "contact_point":  # a nuisance, for which the curvature will do
-            ends = best.interval(name, (at - RANGE, at + RANGE), others)
-        low, high = (None if end is None else problem.value(name, end) for end in ends)
-        found[name] = Value(getattr(best.apparatus, name), low, high, UNITS[name])
+def values_of(profile: Profile) -> dict[str, Value]:
+    """Values with intervals in SI; JKR's theory has no spacing."""
+    best, problem = profile.best, profile.best.problem
+    names = [
+        name
+        for name in ("work_of_adhesion", "spacing", *problem.fitted[1:])
+        if name != "spacing" or problem.theory is not by_jkr
+    ]
+    found = {name: Value(getattr(best.apparatus, name), *profile.interval(name), UNITS[name]) for name in names}
     for name in problem.held:
         value, relative = problem.prior[name].value, problem.prior[name].deviation / problem.prior[name].value
         found[name] = Value(value, *_widened(value, value, value, relative), UNITS[name])
@@ -335,26 +350,20 @@ def _values(best: Best, others: Sequence[Best]) -> dict[str, Value]:
 def _widened(value: float, low: float | None, high: float | None, relative: float) -> tuple[float | None, float | None]:
     """Ends of an interval with an independent relative error more, in the logarithm."""
     ends = (
-        end and value * math.exp(side * math.hypot(math.log(end / value), EXACT * relative))
+        end and value * math.exp(side * math.hypot(math.log(end / value), NORMAL * relative))
         for side, end in ((-1, low), (1, high))
     )
     return next(ends), next(ends)
 
 
-def _limits(best: Best) -> tuple[float, float]:
-    """Coordinates of the spacings of the softest and the stiffest contact, beyond which no curve changes."""
-    length = best.problem.other.units(best.apparatus).displacement
-    softest, stiffest = (best.problem.coordinate("spacing", length / float(tabor)) for tabor in TABORS[[-1, 0]])
-    return softest, stiffest
-
-
-def _candidates(found: Mapping[str, Best]) -> tuple[Candidate, ...]:
+def _candidates(found: Mapping[str, Profile]) -> tuple[Candidate, ...]:
     """Models by their criterion, on the noise that the best of them leaves."""
-    scale = min(best.scale for best in found.values())
-    made = [
-        Candidate(name, best.chi2, best.x.size, best.chi2 / scale + 2 * best.x.size, best.apparatus)
-        for name, best in found.items()
-    ]
+    scale = min(profile.best.scale for profile in found.values())
+    made = []
+    for name, profile in found.items():
+        best, parameters = profile.best, profile.best.x.size + (profile.best.problem.theory is not by_jkr)
+        criterion = best.chi2 / scale + 2 * parameters
+        made.append(Candidate(name, best.chi2, parameters, criterion, best.apparatus, values_of(profile)))
     return tuple(sorted(made, key=lambda one: one.criterion))
 
 

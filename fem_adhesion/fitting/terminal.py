@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from rich.console import Group, RenderableType
@@ -11,7 +12,7 @@ from fem_adhesion.common import record as common
 from fem_adhesion.common.facts import plain
 from fem_adhesion.common.terminal import Column, Fitted, Prose
 from fem_adhesion.fitting import words
-from fem_adhesion.fitting.study import Fit
+from fem_adhesion.fitting.study import Fit, Value
 
 
 def report(fit: Fit) -> RenderableType:
@@ -21,6 +22,7 @@ def report(fit: Fit) -> RenderableType:
         *map(Prose, fit.prepared.told),
         _values(fit),
         _branches(fit),
+        _models(fit),
         Text(),
         Prose(words.comparison(fit)),
         *map(Prose, words.series(fit)),
@@ -51,18 +53,30 @@ def _branches(fit: Fit) -> Fitted:
     return Fitted(columns, ["residuals by branch"])
 
 
+def _models(fit: Fit) -> Fitted:
+    values = [[one.values.get(name) for one in fit.candidates] for name in ("work_of_adhesion", "spacing")]
+    columns = [
+        Column("model", [one.name for one in fit.candidates], words=True),
+        Column("criterion", [f"{one.criterion - fit.candidates[0].criterion:+.3g}" for one in fit.candidates]),
+        *(
+            Column(f"{name}, 95 %", [words.interval(value) if value else "" for value in row])
+            for name, row in zip(("dgamma", "eps"), values, strict=True)
+        ),
+    ]
+    return Fitted(columns, ["models, by Akaike's criterion over the least"])
+
+
 def record(fit: Fit, **options: Any) -> dict[str, Any]:
     """Record for JSON."""
-    named = {
-        name: {**plain_value, "identified": fit.values[name].identified}
-        for name, plain_value in ((name, vars(value)) for name, value in fit.values.items())
-    }
     degrees = fit.best.degrees
     return {
         **common.record(None, {}, **options),
-        **named,
+        **told(fit.values),
         "model": fit.model,
-        "models": plain([{"name": one.name, "chi2": one.chi2, "criterion": one.criterion} for one in fit.candidates]),
+        "models": [
+            {"name": one.name, "chi2": one.chi2, "criterion": one.criterion, **told(one.values)}
+            for one in fit.candidates
+        ],
         "misfit": {
             "found": fit.misfit,
             "chi2": fit.best.chi2,
@@ -75,3 +89,8 @@ def record(fit: Fit, **options: Any) -> dict[str, Any]:
         "noise": {"value": fit.prepared.noise, "unit": "N", "correlation": fit.prepared.correlation},
         "pull_off": {"value": fit.prepared.pull_off, "unit": "N"},
     }
+
+
+def told(values: Mapping[str, Value]) -> dict[str, Any]:
+    """Values as plain data."""
+    return {name: {**vars(value), "identified": value.identified} for name, value in values.items()}

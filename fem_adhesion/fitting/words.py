@@ -9,19 +9,20 @@ from dataclasses import replace
 import numpy as np
 
 from fem_adhesion.common.numbers import counted, engineering, listed
-from fem_adhesion.fitting.study import ATLAS, STRAYED, Fit, Value
+from fem_adhesion.fitting.inference import inverse
+from fem_adhesion.fitting.study import ATLAS, CLEAR, STRAYED, Fit, Value
 from halfspace.atlas import sphere
 
 LAW = (
     "The intervals are those of a paraboloid on a half-space under the 3-9 law. Data of a Morse law of the same dgamma "
-    "were fitted without a misfit at a fifth of its eps and dgamma 5 % off: what eps is depends on the law."
+    "were fitted without a misfit at a fifth of its eps and dgamma 5 % off: what eps is depends on the law. --models "
+    "with another law, as morse:3, shows by how much."
 )
 """What no residual shows."""
 
 NAMES = {"work_of_adhesion": "dgamma", "spacing": "eps", "contact_point": "the contact point", "radius": "R"}
 NAMES |= {"modulus": "E", "stiffness": "the stiffness", "sensitivity": "the sensitivity"}
 NAMES |= {"compliance": "the compliance in series"}
-CLEAR = 6.0  # difference of the criterion from which one model is clearly preferred: a likelihood ratio of 20
 MISSED = 0.1  # share of the pull-off force by which a fit misses what a curve shows best
 SMALLEST = 2.3  # R/eps over tabor, of spheres of 1.5 beta, the smallest that are known
 DRAWN = 2.0  # standard errors from what was given at which the fit contradicts it
@@ -49,6 +50,8 @@ def warnings(fit: Fit) -> Iterator[str]:
     yield from _models(fit)
     yield from _sphere(fit)
     yield from _untested(fit)
+    for name, reason in fit.unsolved.items():
+        yield f"{name} was not fitted: {reason}."
     yield LAW
     for name, value in fit.values.items():
         if not value.identified:
@@ -125,12 +128,12 @@ def _sphere(fit: Fit) -> Iterator[str]:
 
 def _untested(fit: Fit) -> Iterator[str]:
     """That the modulus is taken on trust, where the curve would hardly tell it, by the curvature."""
-    problem = fit.best.problem
+    best, problem = fit.best, fit.best.problem
     if "modulus" in problem.fitted:
         return
-    start = replace(problem, start=fit.best.apparatus, fitted=(*problem.fitted, "modulus"))
-    jacobian = start.jacobian(np.zeros(len(start.fitted)))
-    half = _half_width(jacobian, len(problem.fitted)) * math.sqrt(fit.best.scale)
+    freed = replace(problem, start=best.apparatus, fitted=(*problem.fitted, "modulus"))
+    x = np.zeros(len(freed.fitted))
+    half = replace(best, problem=freed, x=x, jacobian=freed.jacobian(x)).half_width("modulus")
     if half > KNOWN:
         yield (
             "The curve does not test the modulus, which it would leave open by a factor of "
@@ -167,29 +170,21 @@ def comparison(fit: Fit) -> str:
 
 def remedies(fit: Fit) -> Iterator[str]:
     """For each number that is not identified, the measurements that would settle it, by the curvature at its end."""
-    problem = fit.best.problem
     for name, value in fit.values.items():
         end = value.high if value.low is None else value.low
-        if value.identified or end is None:
+        if value.identified or end is None or name not in ("spacing", *fit.best.problem.fitted):
             continue
-        x = fit.best.x.copy()
-        i = problem.fitted.index(name)
-        x[i] = problem.coordinate(name, end)
-        jacobian = problem.jacobian(problem.best(x, held=name).x)
-        places = len(problem.data.places)
-        rows = np.arange(len(jacobian))
-        kinds = [rows < sum(problem.data.travel[run.samples].size for run in problem.data.runs)]
-        kinds.append(~kinds[0] & (rows < kinds[0].sum() + places))
-        helps = []
-        for what, (noise, place) in FINER.items():
-            sharper = jacobian * np.where(kinds[0], noise, np.where(kinds[1], place, 1.0))[:, None]
-            if _half_width(sharper, i) * math.sqrt(fit.best.scale) < KNOWN:
-                helps.append(what)
-        for j, moved in enumerate(problem.fitted):
-            if moved not in ("work_of_adhesion", "spacing", "contact_point", name):
-                exact = np.delete(jacobian, j, axis=1)
-                if _half_width(exact, i - (i > j)) * math.sqrt(fit.best.scale) < KNOWN:
-                    helps.append(f"{NAMES[moved]} measured apart")
+        at = min(fit.profile.fits, key=lambda one: abs(math.log(getattr(one.apparatus, name) / end)))
+        samples = sum(at.problem.data.travel[run.samples].size for run in at.problem.data.runs)
+        row = np.arange(len(at.jacobian)) - samples
+        is_place = (row >= 0) & (row < len(at.problem.data.places))
+        helps = [
+            what
+            for what, (noise, place) in FINER.items()
+            if at.half_width(name, np.where(row < 0, noise, np.where(is_place, place, 1.0))) < KNOWN
+        ]
+        others = [each for each in at.problem.fitted[2:] if each != name]
+        helps += [f"{NAMES[each]} measured apart" for each in others if at.half_width(name, exact=each) < KNOWN]
         shown = sized(end, value.unit)
         if helps:
             yield f"If {NAMES[name]} is near {shown}, {' or '.join(helps)} would settle it."
@@ -200,23 +195,17 @@ def remedies(fit: Fit) -> Iterator[str]:
             )
 
 
-def _half_width(jacobian: np.ndarray, i: int) -> float:
-    """Half of a parameter's interval at 95 % by the curvature."""
-    return 1.96 * math.sqrt(max(float(np.linalg.pinv(jacobian.T @ jacobian)[i, i]), 0.0))
-
-
 def series(fit: Fit) -> Iterator[str]:
     """What an unknown sensitivity or compliance in series does to the work of adhesion."""
-    problem = fit.best.problem
+    covariance = inverse(fit.best.whole)
     for name in ("sensitivity", "compliance"):
-        if name not in problem.fitted:
+        if name not in fit.best.problem.fitted:
             continue
-        i, j = problem.fitted.index("work_of_adhesion"), problem.fitted.index(name)
-        covariance = np.linalg.pinv(fit.best.jacobian.T @ fit.best.jacobian)
+        i, j = (fit.best.problem.fitted.index(each) for each in ("work_of_adhesion", name))
         correlation = covariance[i, j] / math.sqrt(covariance[i, i] * covariance[j, j])
         slope = covariance[i, j] / covariance[j, j]
-        by = f"a per cent more of it goes with {slope:+.2g} % of dgamma" if name == "sensitivity" else ""
-        yield f"dgamma and {NAMES[name]} are fitted together, correlation {correlation:+.2f}{'; ' + by if by else ''}."
+        by = f"; a per cent more of it goes with {slope:+.2g} % of dgamma" if name == "sensitivity" else ""
+        yield f"dgamma and {NAMES[name]} are fitted together, correlation {correlation:+.2f}{by}."
 
 
 def counted_samples(fit: Fit) -> str:

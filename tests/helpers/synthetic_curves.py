@@ -41,7 +41,8 @@ def synthetic(
     theory: Theory = by_atlas,
 ) -> Synthetic:
     """`noise` and `offset` in N, `drift` in N per segment, `pressed` in pull-off forces, `baseline` of the travel."""
-    found = recorded(theory, truth, other.units(truth))
+    units = other.units(truth)
+    found = recorded(theory(units), truth, units)
     base, force = found.contact
     pull_off = -force.min()
     last = np.interp(pressed * pull_off, force[np.argmin(force) :], base[np.argmin(force) :])

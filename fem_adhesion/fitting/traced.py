@@ -1,0 +1,87 @@
+"""Curves of other laws, profiles and bodies for a fit, each traced when it is asked for."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+import halfspace
+from fem_adhesion import convergence
+from fem_adhesion.common.numbers import NUMBER, parse
+from fem_adhesion.common.words import part_in
+from fem_adhesion.fitting.model import BEYOND, FARTHEST, THEORIES
+from fem_adhesion.registry import PARTS, class_of
+from fem_adhesion.scene import Scene
+from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.errors import InputError
+from halfspace.scaling import Units
+from halfspace.values import Array
+
+KINDS = ("law", "profile", "body")
+RTOL = 1e-4  # of the traces
+SAME = 1e-3  # arclength between states that are one
+PLACES = 1600  # on the spline through the states of a path: loads err by 0.03 R dgamma at most
+
+
+def kind_of(word: str) -> str:
+    """Kind of the part that a word names, or InputError."""
+    kind = next((kind for kind in KINDS if word.partition(":")[0] in PARTS[kind]), None)
+    if kind is None:
+        known = ", ".join(name for kind in KINDS for name in PARTS[kind])
+        raise InputError(f"model = {word!r}, limit: one of {', '.join(THEORIES)}, {known}; choose another")
+    return kind
+
+
+@dataclass(frozen=True)
+class Traced:
+    """A theory by the solvers: the atlas' contact with one part exchanged.
+
+    Parameters
+    ----------
+    word : str
+        The part as the command line has it: ``morse:3``, ``sphere``, ``layer:500nm``. Lengths have a unit, or are in
+        beta and those of a law in eps; R/eps is left out, as the fit knows it.
+    poisson : float
+        Poisson's ratio of the body.
+    to_load : float
+        Load in R dgamma up to which the data go.
+    """
+
+    word: str
+    poisson: float
+    to_load: float
+
+    def scene(self, units: Units) -> Scene:
+        """Scene of a contact; InputError if the word names no part."""
+        kind, name = kind_of(self.word), self.word.partition(":")[0]
+        unit = units.spacing if kind == "law" else units.length
+
+        def length(what: str, text: str) -> float:
+            return float(text) if re.fullmatch(NUMBER, text) else parse(text, what) / unit
+
+        size = {"radius_ratio": units.radius_ratio} if "radius_ratio" in PARTS[kind][name].parameters else {}
+        material = {"material": class_of("material", "linear-elastic")(self.poisson)} if kind == "body" else {}
+        part = part_in(kind, self.word, length, size, poisson=self.poisson, **material)
+        return Scene(units.tabor, **{kind: part})
+
+    def __call__(self, units: Units) -> Array:
+        """Approach in eps and load in R dgamma, (2, n), with the attraction continued as the law's tail has it."""
+        scene = self.scene(units)
+        if scene.left_out:
+            path = convergence.trace(scene, rtol=RTOL, to_load=self.to_load)
+        else:
+            path = halfspace.trace(**scene.for_half_space, rtol=RTOL, to_load=self.to_load)
+        points = path.points
+        along = np.array([point.arclength for point in points])
+        apart = np.append(True, np.diff(along) > SAME)  # parts of a path share their ends
+        values = np.array([path.approach, path.load])[:, apart]
+        rates = np.array([point.rates for point in points])[apart][:, [APPROACH, LOAD]]
+        states = CubicHermiteSpline(along[apart], values.T, rates)
+        curve = states(np.linspace(along[0], along[-1], PLACES)).T
+        first, pull = curve[:, 0]
+        h = (1 - first) * (FARTHEST * (1 + units.tabor) / (1 - first)) ** np.linspace(1.0, 0.0, BEYOND)[:-1]
+        tail = pull * ((1 - first) / h) ** (scene.law.decay - 1)
+        return np.hstack([[1 - h, tail], curve])
