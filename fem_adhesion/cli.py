@@ -20,9 +20,10 @@ from fem_adhesion.greenwood.command import COMMAND as GREENWOOD
 from fem_adhesion.report.command import COMMAND as REPORT
 from fem_adhesion.speed.command import COMMAND as SPEED
 from fem_adhesion.sweep.command import COMMAND as SWEEP
+from fem_adhesion.words.command import COMMAND as WORDS
 from halfspace.errors import InputError, NotConverged
 
-COMMANDS = (COMPARE, CURVE, SWEEP, ASSESS, FIT, FINITE_SPHERE, SPEED, GREENWOOD, FORMULAS, BENCHMARK, REPORT)
+COMMANDS = (COMPARE, CURVE, SWEEP, ASSESS, FIT, FINITE_SPHERE, SPEED, GREENWOOD, FORMULAS, BENCHMARK, REPORT, WORDS)
 
 STUDIES = ("PIL", "jinja2", "loky", "markupsafe", "matplotlib", "pint", "plotille", "rich")
 """Libraries of the extra that every command needs, the solvers none."""

@@ -23,7 +23,8 @@ def add_options(command: Parser) -> None:
     add_contact(command, in_si_only=True)
     add_law(command.add_argument_group("law"))
     shape = command.add_argument_group("shape of the tip, where it is no sphere")
-    add_profile(shape, "a sphere's unless given; a table begins with its unit, as r_nm,z_nm, or is in m")
+    own = "a sphere's unless given; lengths as 30nm; a table begins with its unit, as r_nm,z_nm, or is in m"
+    add_profile(shape, own, ("radius_ratio", "counter_radius"))
     mesh = "mesh of the elastic body, in radii of its pole, before a rigid wall; see meshes/README.md"
     shape.add_argument("--mesh", type=Path, help=mesh, metavar="FILE")
     grip = "how spheres are held at their mid-planes, or a mesh is held; sliding unless given"

@@ -122,7 +122,8 @@ class Command:
     def add_to(self, commands: Any) -> None:
         """Add it to the commands of a parser, as argparse's ``add_subparsers`` gives them."""
         epilog = f"example: fem-adhesion {self.name} {self.example}"
-        parser = commands.add_parser(self.name, help=self.help, description=self.description, epilog=epilog)
+        described = f"{self.description} What words mean: fem-adhesion words."
+        parser = commands.add_parser(self.name, help=self.help, description=described, epilog=epilog)
         self.add_options(parser)
         parser.set_defaults(run=self.run)
 

@@ -40,8 +40,9 @@ def add_contact(command: Parser, *, in_si_only: bool = False) -> None:
     carry = "Quantities carry units; none is guessed."
     spread = " Each may have a standard deviation, as 100+-20nm or 0.30+-0.02: what follows from it is told."
     contact = command.add_argument_group("contact", carry + spread if in_si_only else carry)
-    given, plain, number = "required", "", str if in_si_only else float
+    given, plain, of, number = "required", "", "material: ", str if in_si_only else float
     if not in_si_only:
+        of = ""
         given = f"required with a material, {POISSON:g} unless given with --tabor"
         plain = ", with --tabor in R dgamma/eps"
         contact.add_argument("--tabor", type=float, help="Tabor parameter, or a material instead", metavar="MU")
@@ -59,7 +60,7 @@ def add_contact(command: Parser, *, in_si_only: bool = False) -> None:
         ("counter-radius", "RADIUS", "material: of the other body; flat unless given"),
         ("stiffness", "K", f"of the cantilever, as 0.2N/m{plain}; fixed grips unless given"),
     ):
-        contact.add_argument(f"--{name}", help=text, metavar=metavar)
+        contact.add_argument(f"--{name}", help=text.removeprefix(of), metavar=metavar)
     contact.add_argument("--poisson", type=number, help=f"Poisson's ratio, 0 <= nu < 0.5: {given}", metavar="NU")
     contact.add_argument("--counter-poisson", type=number, help=f"of the other body: {given}", metavar="NU")
 
@@ -80,9 +81,14 @@ def add_body(body: Group) -> None:
     body.add_argument("--traction", choices=tractions, help=counted)
 
 
-def add_profile(group: Group, unless: str) -> None:
-    """Add the option of the profile."""
-    group.add_argument("--profile", help=f"undeformed gap; {unless}: {_words('profile')}", metavar="PROFILE")
+def add_profile(group: Group, unless: str, known: tuple[str, ...] = ()) -> None:
+    """Add the option of the profile, which does not give what is known of the contact."""
+    takes = (
+        {name: unit for name, unit in made.parameters.items() if name not in known}
+        for made in PARTS["profile"].values()
+    )
+    words = "; ".join(usage("profile", name, own) for name, own in zip(PARTS["profile"], takes, strict=True))
+    group.add_argument("--profile", help=f"undeformed gap; {unless}: {words}", metavar="PROFILE")
 
 
 def add_law(group: Group) -> None:

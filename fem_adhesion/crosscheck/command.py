@@ -77,8 +77,8 @@ COMMAND = Command(
     "check that two solvers which share no elasticity agree",
     "Solve the adhesive contact of a body by finite elements and by a solver that shares no operator "
     "with them: a half-space by an integral equation, a hemisphere that slides by spherical harmonics. Compare "
-    "operators, residuals and events, and what both share, or all of a body that only finite elements can solve, "
-    "with a problem that shares nothing. "
+    "operators, residuals and events, and what both solvers share, or all of a body that only finite elements can "
+    "solve, with a problem that shares nothing. "
     "Exit code 0: all agree, 1: some do not, 2: bad input.",
     "--tabor 0.5 2 --rtol 1e-4",
     add_options,

@@ -176,7 +176,7 @@ def _figure_bulk(study: Study) -> Figure:
     figure, panels = style.panels(2, height=6.4)
     for axes, way in zip(panels, ("on", "off"), strict=True):
         for (colour, marker), tabor in zip(LOOKS, jumping_tabors(rows)[:4], strict=False):
-            for suffix, how, dashes in (("", "raw", "-"), ("_less_bulk", "bulk yield taken out", style.DASHED)):
+            for suffix, how, dashes in (("", "raw", "-"), ("_less_bulk", "without bulk compression", style.DASHED)):
                 data = samples(rows, "all", f"jump_{way}_approach{suffix}", poisson=poisson, tabor=tabor)
                 if data.tabor.size:
                     look, order = {"color": colour, "linestyle": dashes, "linewidth": 1.1}, np.argsort(data.stretch)

@@ -25,9 +25,9 @@ SHOWN = {
     "pull_off_load": "pull-off force",
     "zero_load_radius": "contact radius under no load",
     "jump_on_approach": "approach at jump-on",
-    "jump_on_approach_less_bulk": "approach at jump-on, bulk yield taken out",
+    "jump_on_approach_less_bulk": "approach at jump-on, elastic compression of the bulk taken out",
     "jump_off_approach": "approach at jump-off",
-    "jump_off_approach_less_bulk": "approach at jump-off, bulk yield taken out",
+    "jump_off_approach_less_bulk": "approach at jump-off, elastic compression of the bulk taken out",
     "hysteresis": "energy lost in a cycle",
 }
 """Quantities on the page; the files have the others besides."""

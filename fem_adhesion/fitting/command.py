@@ -29,7 +29,7 @@ MEASURED = {
     "modulus": ("MODULUS", "its Young's modulus, as 70GPa"),
     "stiffness": ("K", "of the cantilever, as 0.2N/m; that of the file unless given"),
     "sensitivity": ("S", "true deflection over the recorded one; 1 unless given"),
-    "compliance": ("C", "of what else yields in series with the cantilever, as 0.5m/N; none unless given"),
+    "compliance": ("C", "of anything else that bends in series with the cantilever, as 0.5m/N; none unless given"),
 }
 FREE = "free"
 STARTS = {"radius": 20e-9, "modulus": 10e9, "stiffness": 0.1, "sensitivity": 1.0, "compliance": 0.0}

@@ -109,13 +109,13 @@ LEVELS = {
     "operator:": ("Both elastic operators under the same pressures", SOLVERS),
     "cross-residual:": ("The state found by one solver in the equations of the other", SOLVERS),
     "triangles:": ("The half-space by overlapping triangles, as in 1997", TRIANGLES),
-    "equations:": ("What both share, at a state made up, and a weak form that shares nothing", WEAK_FORM),
+    "equations:": ("What both solvers share, at a chosen state, and a weak form that shares nothing", WEAK_FORM),
     "apart:": ("The events of the finite elements in that weak form", WEAK_FORM),
     "law:": ("The law, by its definition", CLOSED_FORM),
     "profile:": ("The profile, by its definition", CLOSED_FORM),
     "length:": ("The lengths, by their definition", CLOSED_FORM),
     "elimination:": ("The same elements condensed and with all displacements kept", WEAK_FORM),
-    "limit:": ("What both share, in closed form", CLOSED_FORM),
+    "limit:": ("What both solvers share, in closed form", CLOSED_FORM),
     "": ("The events", SOLVERS),
 }
 VERDICTS = ("agree", "inconclusive", "disagree")
