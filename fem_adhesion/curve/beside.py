@@ -17,7 +17,6 @@ from fem_adhesion import registry
 from fem_adhesion.common import lines, style
 from fem_adhesion.common.facts import plain
 from fem_adhesion.common.jobs import Progress, unheard
-from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import PAPER, Curves, trace
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -128,8 +127,8 @@ def draw(beside: EquallyStrong) -> Figure:
         for name, marker in MARKERS.items():
             if event := path.event(name):
                 left.plot(event.approach / path.tabor, event.load, marker, color=color, zorder=4)
-        gaps = np.linspace(*USUAL.gaps) / law.strength
-        gaps = gaps[gaps > USUAL.core]
+        gaps = np.linspace(-0.4, 6.0, 1200) / law.strength
+        gaps = gaps[gaps > -0.5]  # a law with a core has none below
         right.plot(gaps * law.strength, -law.pressure(gaps, 1.0) / law.strength, linestyle=dashes, **look)
         frames.append((*(value / path.tabor for value in frame.approach), *frame.load))
     low, high = np.min(frames, axis=0), np.max(frames, axis=0)

@@ -43,7 +43,7 @@ def draw(curves: Curves) -> Figure:
     """
     if curves.solver == WEAK_FORM:
         return weak_form.draw(curves)
-    figure = Figure(figsize=USUAL.page, layout="constrained")
+    figure = Figure(figsize=(7.3, 10.0), layout="constrained")
     areas = figure.subplot_mosaic("aa;bc;de", height_ratios=[1.6, 1, 1])
     body = draw_mesh if has_mesh(curves) else draw_central_gap
     for letter, paint in zip("abcde", (draw_load, draw_pressure, draw_gap, draw_spike, body), strict=True):
@@ -65,7 +65,7 @@ def outlines(state: State, reach: float) -> tuple[Array, Array]:
     corners = np.array(
         [[0, 0], [1, 0], [0, 1]] if isinstance(mesh, MeshTri) else [[0, 0], [1, 0], [1, 1], [0, 1]], float
     )
-    t = np.linspace(0, 1, USUAL.side)[:-1, None]
+    t = np.linspace(0, 1, 9)[:-1, None]  # points on a side
     sides = zip(corners, np.roll(corners, -1, axis=0), strict=True)
     round_cell = np.concatenate([a + t * (b - a) for a, b in sides]).T
     basis = CellBasis(
@@ -90,7 +90,7 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
     a, unit = float(state.observables[CONTACT_RADIUS]), curves.scales["radius"]
     a = a if np.isfinite(a) else scene.tabor**-0.5  # the width of a rigid sphere's attraction where there is no contact
     places, moved = outlines(state, 2 * USUAL.shown * a)
-    factor = USUAL.drawn_as * a / float(np.abs(moved).max())
+    factor = 0.45 * a / float(np.abs(moved).max())
     look: dict[str, Any] = {"facecolors": "0.94", "edgecolors": style.BLUE, "linewidths": 0.35}
     drawn = unit.size * (places + factor * moved)
     axes.add_collection(PolyCollection(list(drawn), **look))
@@ -162,7 +162,7 @@ def draw_gap(axes: Any, curves: Curves) -> str:
     edge = state_of(path, "zero_load")[0].law.edge_gap
     axes.axhline(y.size * edge, color="0.5", linewidth=0.8, linestyle=style.DOTTED, label="edge of contact")
     right = USUAL.wider * widest(path)
-    top = max(2.0, USUAL.highest_gap * path.tabor * widest(path) ** 2 / 2)
+    top = max(2.0, 3.3 * path.tabor * widest(path) ** 2 / 2)  # an undeformed sphere's at the rim
     style.dress(axes, x.label, y.label, legend=None, xlim=(0, x.size * right), ylim=(-0.6 * y.size, top * y.size))
     axes.legend(loc="upper left", **LEGEND)
     return "gap"
@@ -184,7 +184,7 @@ def draw_spike(axes: Any, curves: Curves) -> str:
     name = "jump_off" if path.event("jump_off") else "pull_off"
     (problem, found), look = state_of(path, name), STATES[name]
     edge, radii = problem.contact_radius(found), problem.radii(found)
-    reach = USUAL.spikes * path.segments[0].problem.interface.scales.spike_width
+    reach = 5 * path.segments[0].problem.interface.scales.spike_width
     low, high = max(0.0, edge - reach), edge + reach
     line, shown = profile(path, name, np.linspace(low, high, USUAL.points)), (radii >= low) & (radii <= high)
     axes.plot(*curves.shown(radius=line["radius"], pressure=line["pressure"]), color=look.color, linewidth=1.3)

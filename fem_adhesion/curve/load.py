@@ -66,7 +66,7 @@ def draw_load(axes: Any, curves: Curves) -> str:
     below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 4, "columnspacing": 1.2}
     axes.legend(handles=_seen(axes), **below, **LEGEND | {"handlelength": 2.5})
     close = lines.around_events(curves.path)
-    if highest > USUAL.enlarged * close.load[1]:
+    if highest > 3 * close.load[1]:
         inset = axes.inset_axes((0.08, 0.4, 0.42, 0.5))
         _draw_frame(inset, curves, close)
         inset.tick_params(labelsize=7.5)
@@ -107,7 +107,7 @@ def _draw_other(axes: Any, curves: Curves) -> None:
         return
     if not curves.question.scene.left_out:
         look: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 4, "markerfacecolor": "white"}
-        look |= {"color": "black", "markeredgewidth": 0.8, "zorder": 4, "markevery": USUAL.apart}
+        look |= {"color": "black", "markeredgewidth": 0.8, "zorder": 4, "markevery": 0.04}  # of the diagonal
         approach, load = curves.other.approach, curves.other.load
     else:
         line = lines.smooth(curves.other)
@@ -179,9 +179,7 @@ def _theories(scene: Scene, frame: Frame) -> Iterator[tuple[str, tuple[Array, Ar
     Maugis's is that of a paraboloid, and matched with the 3-9 law.
     """
     scales, surface, tabor = scene.scales, scene.surface, scene.tabor
-    a = np.linspace(
-        1e-3, min(USUAL.theory * scales.widest_radius(frame.load[1]), USUAL.close * surface.end), USUAL.samples
-    )
+    a = np.linspace(1e-3, min(1.3 * scales.widest_radius(frame.load[1]), 0.99 * surface.end), USUAL.samples)
     if scene.body.layered is None:
         yield "JKR", (tabor * jkr_approach(surface, a), jkr_load(surface, a))
     apart = np.linspace(frame.approach[0], min(0.6, frame.approach[1]), USUAL.samples)

@@ -67,7 +67,7 @@ def composed(curves: Curves, solid: Pixels, state: State, view: View, words: tup
     """Solid with a title and a line below it, colour bar, and the load-approach curve with the state on it."""
     height, width = solid.shape[:2]
     with rc_context(LOOK):
-        figure = Figure(figsize=(USUAL.width, USUAL.width * height / width), dpi=width / USUAL.width)
+        figure = Figure(figsize=(8, 8 * height / width), dpi=width / 8)
         FigureCanvasAgg(figure)
         axes = figure.add_axes((0, 0, 1, 1))
         axes.imshow(solid, aspect="auto")
@@ -87,7 +87,7 @@ def _caption(curves: Curves, at: str) -> tuple[str, str]:
         if (at, name) == ("zero_load", "load"):
             numbers[name] = "0"
         elif np.isfinite((found := event.estimate(name)).value):
-            numbers[name] = with_error(found, units[name].size, USUAL.digits)
+            numbers[name] = with_error(found, units[name].size)
     return f"{contact_words(curves)}: {STATES[at].words}", _listed(curves, numbers)
 
 
@@ -170,7 +170,7 @@ class Shot:
     seconds: float = USUAL.moving
 
 
-def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = USUAL.frame) -> None:
+def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = (800, 500)) -> None:
     """Draw the body along the curve through its jumps and write it as gif; raise as `write_picture` or NotConverged."""
     frames = experiment(curves.path)
     images = list(_images(curves, frames, size))
@@ -258,7 +258,7 @@ def _images(curves: Curves, frames: Sequence[Shot], size: tuple[int, int]) -> It
 
 def _with_one_palette(images: Sequence[Pixels]) -> Iterator[Image.Image]:
     """Images in the same few colours, so that none flickers; white stays white, which Pillow's own mapping changes."""
-    colours = _colours(np.concatenate(images[:: max(1, len(images) // USUAL.sampled)]))[0]
+    colours = _colours(np.concatenate(images[:: max(1, len(images) // 8)]))[0]
     chosen = Image.fromarray(colours[None]).quantize(255, kmeans=3).getpalette()  # each colour counts once
     palette = np.append(np.array(chosen, np.uint8), np.full(3, 255, np.uint8)).reshape(-1, 3)
     nearest = KDTree(palette)

@@ -165,7 +165,7 @@ def plot(curves: Curves, width: int = USUAL.columns) -> Text:
     canvas = Canvas(width, USUAL.lines, frame.approach[0], frame.load[0], frame.approach[1], frame.load[1])
     line = lines.smooth(reaching(path, curves.question.stiffness))
     for kind, load in line.parts(line.load):
-        _draw(canvas, line.approach, load, COLOURS[kind], USUAL.thin if kind == lines.UNSTABLE else 1)
+        _draw(canvas, line.approach, load, COLOURS[kind], 3 if kind == lines.UNSTABLE else 1)
     for name, event in path.events.items():
         canvas.point(event.approach, event.load, marker=LETTERS.get(name, name[-1]))
     for name, jump in curves.grips.jumps.items() if curves.grips else ():
