@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from fem_adhesion.assess.command import COMMAND as ASSESS
 from fem_adhesion.benchmark.command import COMMAND as BENCHMARK
-from fem_adhesion.common.files import STANDARD, WRITTEN, NotWritten
+from fem_adhesion.common.files import LEFT, STANDARD, Left, NotWritten
 from fem_adhesion.common.jobs import keep_to_one_thread
 from fem_adhesion.common.options import BAD_INPUT, COMMAND, DISAGREE, NOT_WRITTEN, Parser, ended, ended_by_signal
 from fem_adhesion.crosscheck.command import COMMAND as COMPARE
@@ -41,13 +41,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     options = make_parser().parse_args(arguments)
     asked = COMMAND.set(shlex.join(["fem-adhesion", *arguments]))
-    written: list[str] = []
-    noted = WRITTEN.set(written)
+    left = Left()
+    noted = LEFT.set(left)
     keep_to_one_thread()
     try:
         with ended_by_signal():
             code = int(options.run(options))
-        _tell_written(written)
+        _tell(left)
         return code
     except InputError as error:
         return _told(error, BAD_INPUT)
@@ -60,17 +60,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NotWritten as error:
         return _told(error, NOT_WRITTEN)
     except KeyboardInterrupt as how:
-        return ended(how, "nothing was written")
+        return ended(how, left.kept)
     finally:
         COMMAND.reset(asked)
-        WRITTEN.reset(noted)
+        LEFT.reset(noted)
 
 
-def _tell_written(names: Sequence[str]) -> None:
-    """Say in one line what was written, on standard error where standard output carries data."""
-    files = [name for name in names if name != str(STANDARD)]
+def _tell(left: Left) -> None:
+    """Say what stores held in vain, and in one line what was written, on standard error if the other carries data."""
+    for note in (note for store in left.stores for note in store.notes):
+        print(f"fem-adhesion: {note}", file=sys.stderr)
+    files = [str(name) for name in left.written if name != STANDARD]
     if files:
-        print(f"written: {' '.join(files)}", file=sys.stdout if files == names else sys.stderr)
+        print(f"written: {' '.join(files)}", file=sys.stderr if STANDARD in left.written else sys.stdout)
 
 
 def _told(why: object, code: int) -> int:

@@ -46,14 +46,22 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # what is no fault 
 STANDARD = Path("-")  # stands for standard output
 
 
-WRITTEN: ContextVar[list[str] | None] = ContextVar("written", default=None)
-"""Names of what the command that is being run has written; `STANDARD` where its standard output carries data."""
+@dataclass(frozen=True)
+class Left:
+    """What a command has left so far: names of what it wrote, `STANDARD` among them where that carries data, stores."""
+
+    written: list[Path | str] = field(default_factory=list)
+    stores: list[Store] = field(default_factory=list)
+
+    @property
+    def kept(self) -> str:
+        """What is there after an interruption."""
+        told = [f"what is done is kept in {one.directory}, --resume {one.directory} goes on" for one in self.stores]
+        return "; ".join(told) or "nothing was written"
 
 
-def _note(path: Path | str, *, replaced: bool = False) -> None:
-    """Note what a command has written."""
-    if (names := WRITTEN.get()) is not None:
-        names.append(f"{path} (replaced)" if replaced else str(path))
+LEFT: ContextVar[Left] = ContextVar("left")
+"""Of the command that is being run."""
 
 
 class NotWritten(RuntimeError):
@@ -109,12 +117,12 @@ def all_written_aside(paths: Sequence[Path], *, begun: bool = False) -> Iterator
                     replaced = target.is_file()
                     _put(aside, target)
                     if not begun:  # files of a store are not what was asked for
-                        _note(path, replaced=replaced)
+                        LEFT.get(Left()).written.append(f"{path} (replaced)" if replaced else path)
                 elif _is_standard_output(path):
                     sys.stdout.flush()
                     sys.stdout.buffer.write(contents.getvalue())
                     sys.stdout.flush()
-                    _note(STANDARD)
+                    LEFT.get(Left()).written.append(STANDARD)
                 else:
                     path.write_bytes(contents.getbuffer())
     finally:
@@ -185,7 +193,8 @@ def directory_written_aside(path: Path, *, force: bool | None = False) -> Iterat
             else:
                 for file in aside.iterdir():
                     _put(file, (target / file.name).resolve())
-        _note(f"{path}/{'index.html' if 'index.html' in made else ''} ({len(made)} files)")
+        page = "index.html" if "index.html" in made else ""
+        LEFT.get(Left()).written.append(f"{path}/{page} ({len(made)} files)")
     finally:
         shutil.rmtree(aside, ignore_errors=True)
 
@@ -302,4 +311,6 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
         remedy = "it is no study to resume, choose another" if resume else "choose another or use --resume"
         forced = "" if force is None else " or --force"
         raise InputError(f"{directory} holds {present} files, limit 0; {remedy}{forced}")
-    return Store(directory, code)
+    store = Store(directory, code)
+    LEFT.get(Left()).stores.append(store)
+    return store

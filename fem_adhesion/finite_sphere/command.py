@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from fem_adhesion.common.jobs import in_turn, progress_bar
-from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_output, add_resume, add_workers, ended
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_output, add_resume, add_workers
 
 
 def add_options(command: Parser) -> None:
@@ -36,17 +36,14 @@ def run(options: argparse.Namespace) -> int:
         require_room(options.out, force=options.force)
     store = open_store(place, finite_sphere.code(), resume=bool(options.resume), force=options.force)
     settings = {"jobs": options.jobs, "dask": options.dask, "fresh": bool(options.force and not options.resume)}
-    try:
-        with progress_bar() as step:
-            solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
-        study = finite_sphere.Study((*solved, *plan.left_out), options.quick)
-        with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
-            note = page.write(study, aside, in_turn(step, len(page.PARTS)))
-            page.remove_outdated(options.out, aside)
-    except KeyboardInterrupt as how:
-        return ended(how, f"what is done is kept in {place}, --resume {place} goes on")
-    for line in filter(None, (*store.notes, note)):
-        print(f"fem-adhesion: {line}", file=sys.stderr)
+    with progress_bar() as step:
+        solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
+    study = finite_sphere.Study((*solved, *plan.left_out), options.quick)
+    with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
+        note = page.write(study, aside, in_turn(step, len(page.PARTS)))
+        page.remove_outdated(options.out, aside)
+    if note:
+        print(f"fem-adhesion: {note}", file=sys.stderr)
     print(study.headline)
     return DISAGREE if study.failed else AGREE
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from fem_adhesion.common.facts import plain
 from fem_adhesion.common.files import open_store
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of
-from fem_adhesion.common.options import AGREE, DISAGREE, all_written, console_beside, ended
+from fem_adhesion.common.options import AGREE, DISAGREE, all_written, console_beside
 from fem_adhesion.common.record import record, write_beside
 from fem_adhesion.common.terminal import Column, Fitted, Prose
 from fem_adhesion.fitting.folder import FORCES, Outcome, Spread, code, run, sources, spreads, told, write_csv
@@ -44,28 +43,22 @@ def fit_all(
     curves = sources(paths, **reading)
     store = open_store(options.resume, code(), resume=True, force=None) if options.resume else None
     given = {"curves": [str(path) for path in paths], **reading, **asked}
-    try:
-        with (
-            all_written(csv=options.csv, json=options.json, plot=options.plot) as files,
-            progress_bar() as step,
-        ):
-            found = run(curves, reading, asked, store, jobs=options.jobs, dask=options.dask, progress=step)
-            if "csv" in files:
-                write_csv(found, files["csv"])
-            if "metadata" in files:
-                write_beside(files["metadata"], options.csv.name, record(None, {}, **given))
-            if "json" in files:
-                parts = {"curves": [plain(one) for one in found], "spread": [plain(each) for each in spreads(found)]}
-                json.dump({**record(None, {}, **given), **parts}, files["json"], indent=1, allow_nan=False)
-            if "plot" in files:
-                style.write(lambda: draw(found), files["plot"], form)
-    except KeyboardInterrupt as how:
-        kept = f"what is done is kept in {options.resume}, the same command goes on" if store else "nothing was written"
-        return ended(how, kept)
+    with (
+        all_written(csv=options.csv, json=options.json, plot=options.plot) as files,
+        progress_bar() as step,
+    ):
+        found = run(curves, reading, asked, store, jobs=options.jobs, dask=options.dask, progress=step)
+        if "csv" in files:
+            write_csv(found, files["csv"])
+        if "metadata" in files:
+            write_beside(files["metadata"], options.csv.name, record(None, {}, **given))
+        if "json" in files:
+            parts = {"curves": [plain(one) for one in found], "spread": [plain(each) for each in spreads(found)]}
+            json.dump({**record(None, {}, **given), **parts}, files["json"], indent=1, allow_nan=False)
+        if "plot" in files:
+            style.write(lambda: draw(found), files["plot"], form)
     console = console_beside(options.csv, options.json)
     console.print(_curves(found), _spreads(spreads(found)), Prose(told(found)))
-    for line in store.notes if store else ():
-        sys.stderr.write(f"fem-adhesion: {line}\n")
     return DISAGREE if any(one.reason for one in found) else AGREE
 
 

@@ -18,7 +18,6 @@ from fem_adhesion.common.options import (
     add_resume,
     add_workers,
     all_written,
-    ended,
 )
 from fem_adhesion.common.scene_options import add_law, law_of
 from halfspace.errors import InputError
@@ -86,21 +85,15 @@ def run(options: argparse.Namespace) -> int:
     rtol, to_load = require_rtol(options.rtol), require_load(options.to_load)
     asked: dict[str, Any] = {"rtol": rtol, "to_load": to_load, "law": law_of(options)}
     store = open_store(options.resume, study.code(), resume=True, force=None) if options.resume else None
-    try:
-        with all_written(csv=options.csv) as files, progress_bar() as step:
-            known = study.by_atlas(tabors, rtol, asked["law"])
-            todo = [tabor for tabor in tabors if tabor not in known]
-            traced = study.run(todo, asked, store, jobs=options.jobs, dask=options.dask, progress=step)
-            found = known | dict(zip(todo, traced, strict=True))
-            curves = [found[tabor] for tabor in tabors]
-            study.write_csv(curves, files["csv"], known)
-            if "metadata" in files:
-                write_beside(files["metadata"], options.csv.name, record(tabor=tabors, **asked))
-    except KeyboardInterrupt as how:
-        kept = f"what is done is kept in {options.resume}, the same command goes on" if store else "nothing was written"
-        return ended(how, kept)
-    for line in store.notes if store else ():
-        print(f"fem-adhesion: {line}", file=sys.stderr)
+    with all_written(csv=options.csv) as files, progress_bar() as step:
+        known = study.by_atlas(tabors, rtol, asked["law"])
+        todo = [tabor for tabor in tabors if tabor not in known]
+        traced = study.run(todo, asked, store, jobs=options.jobs, dask=options.dask, progress=step)
+        found = known | dict(zip(todo, traced, strict=True))
+        curves = [found[tabor] for tabor in tabors]
+        study.write_csv(curves, files["csv"], known)
+        if "metadata" in files:
+            write_beside(files["metadata"], options.csv.name, record(tabor=tabors, **asked))
     failed = [curve for curve in curves if curve.reason]
     out = sys.stderr if options.csv == STANDARD else sys.stdout
     solved = [curve for curve in curves if not curve.reason]
