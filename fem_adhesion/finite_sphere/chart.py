@@ -28,7 +28,7 @@ from fem_adhesion.common.page import data_rows, said
 from fem_adhesion.common.style import Picture
 from fem_adhesion.finite_sphere.cases import CRITICAL, Record
 from fem_adhesion.finite_sphere.study import Study
-from fem_adhesion.finite_sphere.table import DeviationRow, borders, samples
+from fem_adhesion.finite_sphere.table import DRAWN, SHOWN, DeviationRow, borders, samples
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.scaling import Units, contact_modulus, spacing_of
 from halfspace.values import Array, Estimate, Valued
@@ -135,7 +135,6 @@ def materials() -> Iterator[Material]:
 LEFT, RIGHT = 0.028, 25.0  # Tabor parameters of the chart's edges
 BOTTOM, TOP = 4.0, 2e5  # R/eps of its edges
 
-PANELS = {"pull_off_load": "error of the pull-off force", "jump_on_approach": "error of the approach at jump-on"}
 LINES: Mapping[float, tuple[str, Any, float, str]] = {  # relative deviations of the contours, and how they look
     0.1: (style.RED, "-", 2.6, "0.80"),
     0.01: (style.BLUE, style.DASHED, 2.2, "0.90"),
@@ -164,8 +163,9 @@ def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence
     `borders` are where the jumps begin, `heading` what to know of the whole, as that a part was not solved.
     """
     figure, panels = style.panels(2, height=7.4)
-    for axes, (quantity, title) in zip(panels, PANELS.items(), strict=True):
-        axes.set(xscale="log", yscale="log", xlim=(LEFT, RIGHT), ylim=(BOTTOM, TOP), title=f"half-space's {title}")
+    for axes, quantity in zip(panels, DRAWN, strict=True):
+        title = f"half-space's error of the {SHOWN[quantity]}"
+        axes.set(xscale="log", yscale="log", xlim=(LEFT, RIGHT), ylim=(BOTTOM, TOP), title=title)
         field = field_of(rows, quantity, poisson)
         if field.tabor.size:
             _contours(axes, field)
@@ -262,7 +262,7 @@ def _materials(axes: Any) -> None:
 
 def _caption(study: Study) -> Iterator[str]:
     """What is to be seen; of where the jumps begin, the smallest sphere, the largest, and the half-space."""
-    fields = [field_of(study.rows, quantity, study.poisson) for quantity in PANELS]
+    fields = [field_of(study.rows, quantity, study.poisson) for quantity in DRAWN]
     crossed = any(np.isfinite(contour(field, level)).any() for field in fields for level in LINES)
     levels = ", ".join(f"{100 * level:g}" for level in LINES)
     yield said("finite_sphere", "chart", "lines" if crossed else "no_lines", levels=levels)

@@ -21,6 +21,8 @@ from fem_adhesion.finite_sphere.fit import RIGID_PULL_OFF, SOFT_PULL_OFF, fit, l
 from fem_adhesion.finite_sphere.study import Study
 from fem_adhesion.finite_sphere.table import (
     CAUSES,
+    DRAWN,
+    SHOWN,
     DeviationRow,
     Samples,
     jumping_tabors,
@@ -34,7 +36,7 @@ from halfspace.values import Array
 STRETCH = r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
 SIZE = "|relative deviation from the half-space|"
 SMALLEST = 1e-7  # least deviation that is shown
-DRAWN = ("all", *(name for name, cause in CAUSES.items() if cause.label and name != "all"))
+SWITCHED = ("all", *(name for name, cause in CAUSES.items() if cause.label and name != "all"))
 
 
 def _draw(study: Study) -> Figure:
@@ -42,7 +44,7 @@ def _draw(study: Study) -> Figure:
     tabors, poisson = panel_tabors(rows), study.poisson
     figure, panels = style.panels(max(len(tabors), 2), height=6.4)
     for axes, tabor in zip(panels, tabors, strict=False):
-        for cause in DRAWN:
+        for cause in SWITCHED:
             _cause(axes, rows, cause, tabor, poisson)
         axes.set_title(rf"$\mu = {tabor:g}$")
         _theories(axes, tabor)
@@ -151,8 +153,7 @@ DASHES = ("-", style.DASHED, style.DOTTED)  # one after the other when colours a
 
 def _figure_poisson(study: Study) -> Figure:
     figure, panels = style.panels(2, height=6.4)
-    quantities = {"pull_off_load": "pull-off force", "jump_on_approach": "approach at jump-on"}
-    for axes, (quantity, title) in zip(panels, quantities.items(), strict=True):
+    for axes, quantity in zip(panels, DRAWN, strict=True):
         for number, (tabor, ratio) in enumerate(points_by_poisson(study.rows)):
             data = samples(study.rows, "all", quantity, tabor=tabor, radius_ratio=ratio)
             if data.poisson.size:
@@ -163,7 +164,7 @@ def _figure_poisson(study: Study) -> Figure:
                 look["linestyle"] = DASHES[number // 6 % len(DASHES)]
                 axes.plot(nu, np.abs(y), label=rf"$\mu = {tabor:g}$, $R/\epsilon = {ratio:g}$", **look)
                 axes.plot(nu[y > 0], np.abs(y[y > 0]), **look | {"linestyle": "none", "markerfacecolor": "white"})
-        axes.set(title=title, yscale="log")
+        axes.set(title=SHOWN[quantity], yscale="log")
         _plain(axes.yaxis, lambda y: f"{100 * y:g} %")
         style.dress(axes, r"Poisson's ratio $\nu$", SIZE, legend=None)
     style.legend_below(figure, panels, columns=3)

@@ -18,19 +18,8 @@ from fem_adhesion.finite_sphere.chart import CHART, LINES, Field, field_of, safe
 from fem_adhesion.finite_sphere.figures import FIGURES
 from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, compare, findings
 from fem_adhesion.finite_sphere.study import Study
-from fem_adhesion.finite_sphere.table import CAUSES, borders, write_tables
+from fem_adhesion.finite_sphere.table import CAUSES, SHOWN, borders, write_tables
 from halfspace.errors import Unsolved, tried
-
-SHOWN = {
-    "pull_off_load": "pull-off force",
-    "zero_load_radius": "contact radius under no load",
-    "jump_on_approach": "approach at jump-on",
-    "jump_on_approach_less_bulk": "approach at jump-on, elastic compression of the bulk taken out",
-    "jump_off_approach": "approach at jump-off",
-    "jump_off_approach_less_bulk": "approach at jump-off, elastic compression of the bulk taken out",
-    "hysteresis": "energy lost in a cycle",
-}
-"""Quantities on the page; the files have the others besides."""
 
 
 def all_tables(study: Study) -> list[Table]:

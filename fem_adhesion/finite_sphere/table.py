@@ -28,6 +28,17 @@ LESS_BULK = {f"{name}_less_bulk": name.removesuffix("_approach") for name in QUA
 """Approaches with the linear yield of the body taken out, and the event that each is of."""
 
 UNITS = QUANTITIES | dict.fromkeys(LESS_BULK, "eps")
+SHOWN = {
+    "pull_off_load": "pull-off force",
+    "zero_load_radius": "contact radius under no load",
+    "jump_on_approach": "approach at jump-on",
+    "jump_on_approach_less_bulk": "approach at jump-on, elastic compression of the bulk taken out",
+    "jump_off_approach": "approach at jump-off",
+    "jump_off_approach_less_bulk": "approach at jump-off, elastic compression of the bulk taken out",
+    "hysteresis": "energy lost in a cycle",
+}
+"""Quantities on the page, in words; the files have the others besides."""
+DRAWN = ("pull_off_load", "jump_on_approach")  # quantities that have a panel in figures
 
 
 @dataclass(frozen=True)
