@@ -21,18 +21,7 @@ KINDS: Mapping[int, str] = {
 }
 
 
-@dataclass(frozen=True)
-class Drawing:
-    """Numbers of lines and frames; loads in the pull-off force."""
-
-    between: int = 12  # points drawn from one computed point to the next
-    rounded: float = 1e-9  # load that counts as none
-    faded: float = 0.04  # attraction at which a frame begins
-    margin: float = 0.08  # around what a frame shows, as a part of the frame
-    highest: float = 0.5  # load that is shown around the events
-
-
-DRAWING = Drawing()
+BETWEEN = 12  # points drawn from one computed point to the next
 
 
 Range = tuple[float, float]
@@ -81,9 +70,9 @@ def smooth(path: EquilibriumPath) -> Line:
     firsts = np.cumsum([0, *(len(segment.points) for segment in segments)])
     values, found = [], []
     for segment, first in zip(segments, firsts, strict=False):
-        between, rates = segment.between(DRAWING.between)
+        between, rates = segment.between(BETWEEN)
         stable = path.stable[first : first + len(segment.points)]
-        before, after = (np.repeat(part, DRAWING.between) for part in (stable[:-1], stable[1:]))
+        before, after = (np.repeat(part, BETWEEN) for part in (stable[:-1], stable[1:]))
         values.append(between[:, [APPROACH, LOAD, CENTRAL_GAP]])
         found.append(kinds(rates, *(np.append(part, stable[-1]) for part in (before, after))))
     approach, load, central_gap = np.concatenate(values).T
@@ -109,16 +98,18 @@ def folds(path: EquilibriumPath) -> Array:
 
 def around_events(path: EquilibriumPath) -> Frame:
     """Frame from where attraction is felt to a load about half the pull-off force."""
-    return frame(path, -DRAWING.highest * path.events["pull_off"].load)
+    return frame(path, -0.5 * path.events["pull_off"].load)
 
 
 def frame(path: EquilibriumPath, highest: float) -> Frame:
     """Frame from where attraction is felt to a load in R dgamma."""
     lowest, line = path.events["pull_off"].load, smooth(path)
-    shown = ((line.load < DRAWING.faded * lowest) | (line.load > -DRAWING.rounded * lowest)) & (line.load <= highest)
+    felt = (line.load < 0.04 * lowest) | (line.load > -1e-9 * lowest)  # attraction, or a load above rounding
+    shown = felt & (line.load <= highest)
     x = np.append(line.approach[shown], path.events["zero_load"].approach)
     return Frame(_padded(float(x.min()), float(x.max())), _padded(lowest, highest))
 
 
 def _padded(low: float, high: float) -> Range:
-    return low - DRAWING.margin * (high - low), high + DRAWING.margin * (high - low) / 2
+    margin = 0.08 * (high - low)
+    return low - margin, high + margin / 2

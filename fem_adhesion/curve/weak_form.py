@@ -14,7 +14,7 @@ from fem_adhesion.curve.solve import WEAK_FORM, Curves
 def draw(curves: Curves) -> Figure:
     """Load and central gap against approach, by stability, with the events."""
     curve, (figure, axes) = curves.paths[WEAK_FORM], style.panels(2)
-    s = np.unique(np.linspace(curve.arclength[:-1], curve.arclength[1:], lines.DRAWING.between + 1))
+    s = np.unique(np.linspace(curve.arclength[:-1], curve.arclength[1:], lines.BETWEEN + 1))
     values = np.column_stack([curve.approach, curve.load, curve.central_gap])
     spline = CubicHermiteSpline(curve.arclength, values, curve.rates)
     before = np.clip(np.searchsorted(curve.arclength, s, side="right") - 1, 0, len(curve.stable) - 2)
