@@ -49,13 +49,10 @@ def run(options: argparse.Namespace) -> int:
     scenes = [scene_of(options, mu) for mu in options.tabor]
     for scene in scenes:
         require_comparable(scene, options.rtol)
-    console, cases = console_beside(options.json), []
+    console, how = console_beside(options.json), {"jobs": options.jobs, "dask": options.dask}
     with all_written(json=options.json) as files:
-        solved = comparisons.run(scenes, rtol=options.rtol, jobs=options.jobs, dask=options.dask)
         with progress_bar() as step:
-            for done, scene in enumerate(scenes):
-                step(f"tabor {scene.tabor:g}", done, len(scenes))
-                cases.append(next(solved))
+            cases = comparisons.run(scenes, rtol=options.rtol, progress=step, **how)
         record = run_record(rtol=options.rtol) | crosscheck_record(cases)
         if "json" in files:
             json.dump(record, files["json"], indent=1, allow_nan=False)

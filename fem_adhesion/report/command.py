@@ -48,11 +48,7 @@ def run(options: argparse.Namespace) -> int:
     for name, directory in directories.items():
         section_of(name, directory)  # refuse a directory before any work
     with written_aside(options.html) as file, progress_bar() as step:
-        cases = []
-        step("comparison", 0, len(scenes))
-        for case in crosscheck.run(scenes, rtol=options.rtol):
-            cases.append(case)
-            step("comparison", len(cases), len(scenes))
+        cases = crosscheck.run(scenes, rtol=options.rtol, progress=step)
 
         def walked() -> Contents:
             curves = solve.solve(question, step)

@@ -260,7 +260,7 @@ def test_every_option_of_a_contact_is_heeded(monkeypatch):
 
 
 def test_compare_writes_its_record_to_standard_output_alone(monkeypatch, capsys):
-    monkeypatch.setattr(beside, "run", lambda *_, **__: iter(ENDINGS["agree"]))
+    monkeypatch.setattr(beside, "run", lambda *_, **__: ENDINGS["agree"])
     assert cli.main(["compare", "--tabor", "0.5", "--json", "-"]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out)["verdict"] == "agree"

@@ -189,7 +189,7 @@ def solved_before(monkeypatch, contents, cases):
         asked.append(question)
         return found
 
-    monkeypatch.setattr(beside, "run", lambda scenes, rtol: told((scenes, rtol), iter(cases)))
+    monkeypatch.setattr(beside, "run", lambda scenes, rtol, **_: told((scenes, rtol), cases))
     monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda question, _: told(question, contents.curves))
     monkeypatch.setattr("fem_adhesion.report.walk.walk", lambda curves, **_: told(curves, contents.walk))
     return asked
@@ -228,7 +228,7 @@ def test_a_curve_that_cannot_be_solved_is_said_to_be_missing(tmp_path, monkeypat
     def fail(*_):
         raise NotConverged("no convergence on purpose; try another day")
 
-    monkeypatch.setattr(beside, "run", lambda scenes, rtol: iter(ENDINGS["agree"]))  # noqa: ARG005
+    monkeypatch.setattr(beside, "run", lambda *_, **__: ENDINGS["agree"])
     monkeypatch.setattr("fem_adhesion.curve.solve.solve", fail)
     assert cli.main(["report", "--html", str(tmp_path / "a.html"), "--tabor", "2"]) == 1
     assert "verdict: failed" in capsys.readouterr().out

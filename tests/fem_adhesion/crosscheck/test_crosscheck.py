@@ -241,7 +241,7 @@ def test_a_failing_case_does_not_lose_the_others(monkeypatch):
 
     compare = crosscheck.compare
     monkeypatch.setattr(crosscheck, "compare", lambda *args, **kwargs: compare(*args, **kwargs, solve=solve))
-    results = list(beside.run([Scene(tabor=1.0), Scene(tabor=0.5)], rtol=1e-2, jobs=1))
+    results = beside.run([Scene(tabor=1.0), Scene(tabor=0.5)], rtol=1e-2, jobs=1)
     assert results[0].verdict == "failed"
     assert results[0].reason == "on purpose; try another day"
     assert [row.quantity for row in results[0].rows[:4]] == [f"operator: {name}" for name in references.PRESSURES]

@@ -159,7 +159,7 @@ CODES = {"agree": 0, "inconclusive": 1, "disagree": 1, "failed": 1}
 @pytest.mark.parametrize("verdict", ENDINGS)
 def test_compare_tells_the_verdict_in_text_record_and_exit_code(verdict, tmp_path, monkeypatch, capsys):
     cases = ENDINGS[verdict]
-    monkeypatch.setattr(beside, "run", lambda *_, **__: iter(cases))
+    monkeypatch.setattr(beside, "run", lambda *_, **__: cases)
     tabors = [f"{case.scene.tabor:g}" for case in cases]
     assert cli.main(["compare", "--tabor", *tabors, "--json", str(tmp_path / "a.json")]) == CODES[verdict]
     shown = capsys.readouterr().out
