@@ -1,7 +1,6 @@
-"""What these pages need beyond Sphinx: commands that are run, schemas of their files, formulas as MathML."""
+"""What these pages need beyond Sphinx: commands that are run, and formulas as MathML."""
 
 import io
-import json
 import shlex
 import shutil
 import tempfile
@@ -61,44 +60,6 @@ class Run(SphinxDirective):
         return [nodes.literal_block(text, text, language="text")]
 
 
-class Schema(SphinxDirective):
-    """Command line of fem-adhesion, run while the page is built, with the columns and keys of the files it writes."""
-
-    has_content = True
-
-    def run(self):
-        """Run it in an empty directory."""
-        line = "\n".join(self.content)
-        lines = [f"$ {line}"]
-        with tempfile.TemporaryDirectory() as place, chdir(place):
-            run_command(line)
-            for file in sorted(Path().rglob("*.*")):
-                text = file.read_text(encoding="utf-8")
-                inside = keys_of(json.loads(text)) if file.suffix == ".json" else text.partition("\n")[0].split(",")
-                lines += ["", str(file), *(f"    {one}" for one in inside if file.suffix != ".md")]
-        text = "\n".join(lines)
-        return [nodes.literal_block(text, text, language="text")]
-
-
-def keys_of(value):
-    """Keys of an object of JSON with the kinds of their values, indented; of many alike the first stands for all."""
-    kinds = {dict: "object", list: "list", str: "text", bool: "true or false", type(None): "null"}
-    for number, (key, inside) in enumerate(value.items()):
-        if number and isinstance(inside, dict) and alike(inside, next(iter(value.values()))):
-            yield "..."
-            return
-        of = inside[0] if isinstance(inside, list) and inside else inside
-        many = "list of " if of is not inside else ""
-        yield f"{key}: {many}{kinds.get(type(of), 'number')}"
-        if isinstance(of, dict):
-            yield from (f"    {one}" for one in keys_of(of))
-
-
-def alike(one, other):
-    """Whether both are objects with the same keys, of which there are some."""
-    return bool(one) and isinstance(other, dict) and one.keys() == other.keys()
-
-
 def inline_formula(translator, node):
     """Write a formula within the text as MathML, which browsers draw by themselves."""
     translator.body.append(tex2mathml(node.astext()))
@@ -144,5 +105,4 @@ def setup(app):
     app.connect("autodoc-process-docstring", leave_out, priority=1000)
     app.add_html_math_renderer("mathml", (inline_formula, None), (formula, None))
     app.add_directive("run", Run)
-    app.add_directive("schema", Schema)
     return {"parallel_read_safe": True}

@@ -56,7 +56,7 @@ def _shown():
     shown, built = [], set()
     for page in PAGES:
         text = re.sub(r"\s*\\\n\s*", " ", page.read_text())
-        built |= set(re.findall(r"^```\{(?:run|schema)\}\n(?::.*\n)*(.*)$", text, re.M))
+        built |= set(re.findall(r"^```\{run\}\n(?::.*\n)*(.*)$", text, re.M))
         blocks = "".join(re.findall(r"^```sh\n(.*?)^```", text, re.S | re.M)).splitlines()
         prose = re.sub(r"^ *```.*?^ *```", "", text, flags=re.S | re.M)
         blocks += re.findall(r"^    (\S.*)$", prose, re.M)

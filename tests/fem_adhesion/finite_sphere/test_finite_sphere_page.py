@@ -373,7 +373,7 @@ def share(case, **of_models):
         ("causes", {"finite_body": 3.0}, "the larger part is the body's at R/eps = 10 (15 %), and the body's at"),
         ("causes", {"true_profile": 3.0}, "At mu = 1 the larger part is the profile's at R/eps = 10 (15 %)"),
         ("causes", {"surface_traction": 0.5}, "The law per true area changes it by -50 % of what the profile does"),
-        ("bulk", dict.fromkeys(MODELS, -10.0), "the yield is most of it at 0 of them"),
+        ("bulk", dict.fromkeys(MODELS, -10.0), "the compression is most of it at 0 of them"),
     ],
 )
 def test_a_caption_tells_what_the_numbers_are(stem, of_models, told):
