@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_adhesion.common.options import (
     AGREE,
+    DISAGREE,
     Command,
     Parser,
     add_files,
@@ -22,7 +24,12 @@ from fem_adhesion.common.options import (
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from rich.console import RenderableType
+
+    from fem_adhesion.common.jobs import Progress
     from fem_adhesion.common.numbers import Measured
+    from fem_adhesion.fitting.folder import Row, Source
 
 MEASURED = {
     "radius": ("RADIUS", "of the sphere, as 100nm"),
@@ -56,10 +63,9 @@ def add_options(command: Parser) -> None:
     models += "profile or a body in one word, as morse:3, sphere, layer:500nm, hemisphere"
     command.add_argument("--models", nargs="+", help=models, metavar="MODEL")
     results = command.add_argument_group("results")
-    add_files(results, json="what is found", plot="data, fit and contour")
+    add_files(results, json="what is found", plot="data, fit and contour; of many curves histograms", csv="the fits")
     results.add_argument("--nanite", type=Path, help="write a fit model for nanite and PyJibe", metavar="FILE.py")
     many = command.add_argument_group("many curves")
-    add_files(many, csv="the fits")
     add_resume(many)
     add_workers(command)
 
@@ -72,60 +78,65 @@ def run(options: argparse.Namespace) -> int:
     int
         1 if one of many curves was not fitted, else 0.
     """
-    from fem_adhesion.fitting.measured import count
+    from fem_adhesion.common import style
+    from fem_adhesion.common.files import open_store
+    from fem_adhesion.common.jobs import progress_bar
+    from fem_adhesion.common.numbers import parse
+    from fem_adhesion.common.record import record, write_beside
+    from fem_adhesion.fitting import folder, plugin
 
     given = asked(options)
     if options.nanite:
-        _write_plugin(options.nanite, given)
-    if not options.curves:
-        if options.nanite:
-            return AGREE
-        raise InputError("no curve, limit: one or more; give a file or a folder")
-    stiffness = given.get("stiffness")
-    reading = {"stiffness": stiffness and stiffness.value, "sensitivity": _detector(options.detector)}
-    first = options.curves[0]
-    if len(options.curves) > 1 or first.is_dir() or count(first, **reading) > 1:
-        from fem_adhesion.fitting.many import fit_all
+        plugin.write(options.nanite, **{name: _value(given[name]) for name in ("radius", "modulus", "poisson")})
+    if options.nanite and not options.curves:
+        return AGREE
+    reading = {
+        "stiffness": _value(given["stiffness"]) if "stiffness" in given else None,
+        "sensitivity": parse(options.detector, "detector") if options.detector else None,
+    }
+    curves = folder.sources(options.curves, **reading)
+    is_one = len(curves) == 1 and not options.curves[0].is_dir()
+    if is_one and options.resume:
+        raise InputError("--resume with one curve, limit: many; give a folder or write --json")
+    form = style.require_suffix(options.plot) if options.plot else ""
+    store = open_store(options.resume, folder.code(), resume=True, force=None) if options.resume else None
+    with all_written(csv=options.csv, json=options.json, plot=options.plot) as files, progress_bar() as step:
+        if is_one:
+            rows, content, shown, draw = _one(curves[0], reading, given, step)
+        else:
+            rows = folder.run(curves, reading, given, store, jobs=options.jobs, dask=options.dask, progress=step)
+            content, shown = {"curves": rows, "spread": folder.spreads(rows)}, folder.report(rows)
+            draw = partial(folder.draw, rows)
+        head = record(None, {}, **{"curves": options.curves, **reading, **given})
+        if "csv" in files:
+            folder.write_csv(rows, files["csv"])
+        if "metadata" in files:
+            write_beside(files["metadata"], options.csv.name, head)
+        if "json" in files:
+            json.dump({**head, **content}, files["json"], indent=1, allow_nan=False)
+        if "plot" in files:
+            style.write(draw, files["plot"], form)
+    console_beside(options.csv, options.json).print(shown)
+    return DISAGREE if any("reason" in row for row in rows) else AGREE
 
-        return fit_all(options, options.curves, reading, given)
-    for name in ("csv", "resume"):
-        if getattr(options, name):
-            raise InputError(f"--{name} with one curve, limit: many; give a folder or write --json")
-    return _fit_one(options, reading, given)
 
-
-def _fit_one(options: argparse.Namespace, reading: Mapping[str, float | None], given: Mapping[str, Any]) -> int:
-    from fem_adhesion.common import style
-    from fem_adhesion.common.jobs import progress_bar
+def _one(
+    source: Source, reading: Mapping[str, float | None], given: Mapping[str, Any], step: Progress
+) -> tuple[Sequence[Row], Row, RenderableType, Callable[[], Figure]]:
+    """Rows, record, what is shown, and how to draw the fit of a curve."""
     from fem_adhesion.fitting import figure, terminal
     from fem_adhesion.fitting.measured import read
     from fem_adhesion.fitting.study import fit
 
-    (path,), form = options.curves, style.require_suffix(options.plot) if options.plot else ""
-    with all_written(json=options.json, plot=options.plot) as files:
-        with progress_bar() as step:
-            found = fit(
-                read(path, stiffness=reading["stiffness"], sensitivity=reading["sensitivity"]), **given, progress=step
-            )
-        if "json" in files:
-            json.dump(terminal.record(found, curve=path, **given), files["json"], indent=1, allow_nan=False)
-        if "plot" in files:
-            style.write(lambda: figure.draw(found), files["plot"], form)
-        report = terminal.report(found)
-    console_beside(options.json).print(report)
-    return AGREE
+    curve = read(source.path, stiffness=reading["stiffness"], sensitivity=reading["sensitivity"])
+    found = fit(curve, **given, progress=step)
+    row = source.named | terminal.record(found)
+    return [row], row, terminal.report(found), partial(figure.draw, found)
 
 
-def _write_plugin(path: Path, given: Mapping[str, Any]) -> None:
-    from fem_adhesion.fitting import plugin
-
-    plugin.write(path, radius=given["radius"].value, modulus=given["modulus"].value, poisson=given["poisson"])
-
-
-def _detector(text: str | None) -> float | None:
-    from fem_adhesion.common.numbers import parse
-
-    return parse(text, "detector") if text else None
+def _value(given: Any) -> float:
+    """Number without its standard error."""
+    return float(getattr(given, "value", given))
 
 
 def asked(options: argparse.Namespace) -> dict[str, Any]:

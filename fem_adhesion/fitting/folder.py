@@ -1,7 +1,8 @@
 """Fits of many curves at once, each kept as soon as it is there: their table, and their spread beside the intervals.
 
-Curves of one sample differ by more than their noise: another spot, another asperity. The spread between curves is the
-uncertainty of the sample, the interval of a curve that of the curve alone.
+A row is the record of a fit as plain data, see `terminal.record`, with the file and the number of its curve, or the
+reason why there is no fit. Curves of one sample differ by more than their noise: another spot, another asperity. The
+spread between curves is the uncertainty of the sample, the interval of a curve that of the curve alone.
 """
 
 from __future__ import annotations
@@ -9,26 +10,33 @@ from __future__ import annotations
 import csv
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from rich.console import Group
 
+from fem_adhesion.common import style
 from fem_adhesion.common.facts import code_digest, plain
 from fem_adhesion.common.files import Plain, Store
 from fem_adhesion.common.jobs import Kept, solve_all
-from fem_adhesion.common.numbers import counted
+from fem_adhesion.common.numbers import PREFIXES, counted, exponent_of
 from fem_adhesion.common.record import column
-from fem_adhesion.fitting import makers, words
+from fem_adhesion.common.terminal import Column, Fitted, Prose
+from fem_adhesion.fitting import makers, terminal
+from fem_adhesion.fitting.inference import NORMAL
 from fem_adhesion.fitting.measured import count, read
-from fem_adhesion.fitting.study import Value, fit
+from fem_adhesion.fitting.study import UNITS, Value, fit
+from fem_adhesion.fitting.words import interval, sized
 from fem_adhesion.registry import record_of
 from halfspace.errors import InputError, Unsolved, tried
 
+Row = Mapping[str, Any]
 FORCES: Mapping[str, str] = {"pull_off": "N", "noise": "N"}  # found without a model
-SIDE = 1.96  # standard deviations in half an interval of 95 %
+SHOWN = ("work_of_adhesion", "spacing", "pull_off")
 
 
 @dataclass(frozen=True)
@@ -41,71 +49,30 @@ class Source:
     def __str__(self) -> str:
         return f"{self.path.name} {self.number}" if makers.is_makers(self.path) else self.path.name
 
-
-@dataclass(frozen=True)
-class Outcome:
-    """What the fit of a curve gave, or the reason why it gave nothing.
-
-    Attributes
-    ----------
-    file : str
-        Path of the file, and `number` of the curve in it.
-    values : mapping of str to Value
-        Fitted quantities in SI with their intervals at 95 %.
-    forces : mapping of str to float
-        Pull-off force and noise of the data in N.
-    """
-
-    file: str
-    number: int
-    values: Mapping[str, Value] = field(default_factory=dict)
-    forces: Mapping[str, float] = field(default_factory=dict)
-    model: str = ""
-    misfit: bool = False
-    warnings: tuple[str, ...] = ()
-    reason: str = ""
-
-
-@dataclass(frozen=True)
-class Spread:
-    """A quantity over all curves, in SI: how many gave it, quantiles, and two standard deviations.
-
-    Attributes
-    ----------
-    between : float
-        Half of what the middle 68 % of the curves span.
-    within : float
-        Median of half the intervals over 1.96; nan if no curve has both ends.
-    """
-
-    name: str
-    unit: str
-    curves: int
-    low: float
-    median: float
-    high: float
-    between: float
-    within: float
+    @property
+    def named(self) -> dict[str, Any]:
+        """What a row says of its curve."""
+        return {"file": str(self.path), "number": self.number}
 
 
 def sources(paths: Sequence[Path], **given: float | None) -> tuple[Source, ...]:
     """Curves of files and folders in the order of their names; stiffness and sensitivity as for `read`."""
-    files = [file for path in paths for file in (sorted(path.iterdir()) if path.is_dir() else [path])]
-    known = [file for file in files if file.is_file() and (file.suffix.lower() == ".csv" or makers.is_makers(file))]
-    if not known:
-        names = ", ".join(map(str, paths))
-        raise InputError(f"{names} has no file of a force curve, limit: .csv and files of makers; choose another")
-    return tuple(Source(file, number) for file in dict.fromkeys(known) for number in range(count(file, **given)))
+    files = list[Path]()
+    for path in paths:
+        inside = [file for file in sorted(path.iterdir()) if file.is_file()] if path.is_dir() else [path]
+        files += [file for file in inside if file.suffix.lower() == ".csv" or makers.is_makers(file)]
+    if not files:
+        names = ", ".join(map(str, paths)) or "nothing"
+        raise InputError(
+            f"{names} has no file of a force curve, limit: .csv and files of makers; give a file or a folder"
+        )
+    return tuple(Source(file, number) for file in dict.fromkeys(files) for number in range(count(file, **given)))
 
 
-def outcome(source: Source, *, reading: Mapping[str, float | None], **asked: Any) -> Outcome:
-    """Fit of a curve, see `fem_adhesion.fitting.study.fit`, or why there is none."""
+def outcome(source: Source, *, reading: Mapping[str, float | None], **asked: Any) -> Row:
+    """Row of a curve, see `fem_adhesion.fitting.study.fit`."""
     found = tried(lambda: fit(read(source.path, number=source.number, **reading), **asked), refusals=True)
-    named = str(source.path), source.number
-    if isinstance(found, Unsolved):
-        return Outcome(*named, reason=found.reason)
-    forces = {name: float(getattr(found.prepared, name)) for name in FORCES}
-    return Outcome(*named, found.values, forces, found.model, bool(found.misfit), tuple(words.warnings(found)))
+    return source.named | ({"reason": found.reason} if isinstance(found, Unsolved) else terminal.record(found))
 
 
 def run(
@@ -114,12 +81,12 @@ def run(
     asked: Mapping[str, Any],
     store: Store | None = None,
     *,
-    work: Callable[..., Outcome] = outcome,
+    work: Callable[..., Row] = outcome,
     **how: Any,
-) -> tuple[Outcome, ...]:
+) -> tuple[Row, ...]:
     """Fit the curves that the store does not hold, and store each at once.
 
-    `reading` are keywords of `read`, `asked` those of `fit`. The work, a function of a module, makes the outcome of a
+    `reading` are keywords of `read`, `asked` those of `fit`. The work, a function of a module, makes the row of a
     curve; `how` are further keywords of `fem_adhesion.common.jobs.solve_all`: jobs, dask, progress.
     """
 
@@ -127,10 +94,13 @@ def run(
         named = {name: plain(record_of(value)) for name, value in {**reading, **asked}.items()}
         return {"file": _digest(source.path, source.path.stat().st_mtime_ns), "number": source.number, **named}
 
-    def died(source: Source, reason: str) -> Outcome:
-        return Outcome(str(source.path), source.number, reason=reason)
-
-    kept = Kept(inputs, str, asdict, _from_plain, died)
+    kept = Kept[Source, Row](
+        inputs,
+        str,
+        dict,
+        lambda source, row: {**row, **source.named},  # the store knows the curve by what is in its file
+        lambda source, reason: source.named | {"reason": reason},
+    )
     return solve_all(curves, store, work=partial(work, reading=reading, **asked), kept=kept, **how)
 
 
@@ -144,70 +114,115 @@ def _digest(path: Path, _changed: int) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _from_plain(source: Source, kept: Mapping[str, Any]) -> Outcome:
-    """Outcome of the store, which knows the curve by what is in its file."""
-    try:
-        values = {name: Value(**value) for name, value in kept["values"].items()}
-        named = {"file": str(source.path), "values": values, "warnings": tuple(kept["warnings"])}
-        return Outcome(**{**kept, **named})
-    except (KeyError, TypeError) as error:
-        raise InputError(f"it is no fit ({error})") from error
+def values(rows: Sequence[Row], name: str) -> list[Value]:
+    """Values of a quantity in the rows that have it; a force that was found without a model has no interval."""
+    return [Value(*map(row[name].get, ("value", "low", "high", "unit"))) for row in rows if name in row]
 
 
-def spreads(outcomes: Sequence[Outcome]) -> tuple[Spread, ...]:
-    """Spread of each fitted quantity and force between the curves; the travel of the contact means nothing there."""
-    found = list[Spread]()
-    for name in dict.fromkeys(name for one in outcomes for name in one.values if name != "contact_point"):
-        given = [one.values[name] for one in outcomes if name in one.values]
-        halves = [(each.high - each.low) / 2 / SIDE for each in given if each.low is not None and each.high is not None]
-        numbers = [each.value for each in given]
-        found.append(_spread(name, given[0].unit, numbers, float(np.median(halves)) if halves else float("nan")))
-    for name, unit in FORCES.items():
-        found.append(_spread(name, unit, [one.forces[name] for one in outcomes if one.forces], float("nan")))
-    return tuple(each for each in found if each.curves)
+def spreads(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """Spread of each quantity between the curves, in SI: quantiles, and one standard deviation.
+
+    `between` is half of what the middle 68 % of the curves span, `within` the median standard error of the curves that
+    have both ends, None without any. The travel of the contact means nothing there.
+    """
+    found = []
+    for name, unit in {**UNITS, **FORCES}.items():
+        given = values(rows, name)
+        if not given or name == "contact_point":
+            continue
+        halves = [
+            (each.high - each.low) / 2 / NORMAL for each in given if each.low is not None and each.high is not None
+        ]
+        quantiles = np.percentile([each.value for each in given], [10, 50, 90, 16, 84])
+        shown = dict(zip(("low", "median", "high"), quantiles.tolist(), strict=False))
+        between, within = float(np.ptp(quantiles[3:])) / 2, float(np.median(halves)) if halves else None
+        found.append({"name": name, "unit": unit, "curves": len(given), **shown, "between": between, "within": within})
+    return found
 
 
-def _spread(name: str, unit: str, numbers: Sequence[float], within: float) -> Spread:
-    low, least, median, most, high = np.percentile(numbers or [np.nan], [10, 16, 50, 84, 90]).tolist()
-    return Spread(name, unit, len(numbers), low, median, high, (most - least) / 2, within)
-
-
-def told(outcomes: Sequence[Outcome]) -> str:
+def told(rows: Sequence[Row]) -> str:
     """How many curves were fitted, how many with a misfit, and whether they differ by more than their intervals."""
-    fitted = [one for one in outcomes if not one.reason]
-    misfits = sum(one.misfit for one in fitted)
+    fitted = [row for row in rows if "reason" not in row]
+    misfits = sum(row["misfit"]["found"] for row in fitted)
     cautions = "; the table (--csv) and the record (--json) have their cautions" if misfits else ""
-    lines = [f"{len(fitted)} of {counted(len(outcomes), 'curve')} fitted, {misfits} with a misfit{cautions}."]
-    for each in spreads(outcomes):
-        if each.curves > 2 and each.between > 2 * each.within:
-            times = f"{each.between / each.within:.2g} times what their own intervals allow"
-            lines.append(f"The {each.name.replace('_', ' ')} differs between curves by {times}: quote the spread.")
+    lines = [f"{len(fitted)} of {counted(len(rows), 'curve')} fitted, {misfits} with a misfit{cautions}."]
+    for each in spreads(rows):
+        if each["curves"] > 2 and each["within"] and each["between"] > 2 * each["within"]:
+            times = f"{each['between'] / each['within']:.2g} times what their own intervals allow"
+            lines.append(f"The {each['name'].replace('_', ' ')} differs between curves by {times}: quote the spread.")
     return " ".join(lines)
 
 
-def write_csv(outcomes: Sequence[Outcome], file: IO[str]) -> None:
-    """Write a row for each curve, in SI; an end of an interval that the curve leaves open is empty."""
-    units = {name: value.unit for one in outcomes for name, value in one.values.items()}
-    rows = [_row(one, units) for one in outcomes]
-    writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+def write_csv(rows: Sequence[Row], file: IO[str]) -> None:
+    """Write a line for each curve, in SI; an end of an interval that the curve leaves open is empty."""
+    names = {name: unit for name, unit in {**UNITS, **FORCES}.items() if any(name in row for row in rows)}
+    lines = []
+    for row in rows:
+        line = {"file": row["file"], "curve": row["number"], "model": row.get("model", "")}
+        line["misfit"] = {True: "yes", False: "no"}[row["misfit"]["found"]] if "misfit" in row else ""
+        for name, unit in names.items():
+            for end in ("value",) if name in FORCES else ("value", "low", "high"):
+                what = name if end == "value" else f"{name}_{end}"
+                line[column(what, unit) if unit else what] = row.get(name, {}).get(end)
+        lines.append(line | {"warnings": " ".join(row.get("warnings", ())), "reason": row.get("reason", "")})
+    writer = csv.DictWriter(file, list(lines[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows)
+    writer.writerows(lines)
 
 
-def _row(one: Outcome, units: Mapping[str, str]) -> dict[str, str]:
-    """Columns of a curve."""
-    numbers: dict[str, float | None] = {}
-    for name, unit in units.items():
-        value = one.values.get(name)
-        for end in ("value", "low", "high"):
-            known = getattr(value, end) if value else None
-            numbers[_named(name if end == "value" else f"{name}_{end}", unit)] = known
-    numbers |= {_named(name, unit): one.forces.get(name) for name, unit in FORCES.items()}
-    written = {name: "" if number is None else repr(float(number)) for name, number in numbers.items()}
-    said = {"warnings": " ".join(one.warnings), "reason": one.reason}
-    misfit = "" if one.reason else "yes" if one.misfit else "no"
-    return {"file": one.file, "curve": str(one.number), "model": one.model, "misfit": misfit, **written, **said}
+def report(rows: Sequence[Row]) -> Group:
+    """Tables of the curves and of their spread for the terminal."""
+
+    def cells(name: str, text: Callable[[Value], str]) -> list[str]:
+        return [text(values([row], name)[0]) if name in row else "" for row in rows]
+
+    first = [Column("curve", [f"{Path(row['file']).name} {row['number'] or ''}".strip() for row in rows], words=True)]
+    for name in SHOWN[:2]:
+        first.append(Column(name.replace("_", " "), cells(name, lambda value: sized(value.value, value.unit))))
+        first.append(Column("95 %", cells(name, interval)))
+    first.append(Column("model", [row.get("model", "") for row in rows], words=True))
+    ended = [row.get("reason") or ("misfit" if row["misfit"]["found"] else "") for row in rows]
+    found = spreads(rows)
+    second = [
+        Column("quantity", [each["name"].replace("_", " ") for each in found], words=True),
+        Column("curves", [str(each["curves"]) for each in found]),
+    ]
+    headers = {
+        "median": "median",
+        "low": "10 %",
+        "high": "90 %",
+        "between": "between\ncurves",
+        "within": "within\na curve",
+    }
+    for name, header in headers.items():
+        second.append(Column(header, ["" if each[name] is None else sized(each[name], each["unit"]) for each in found]))
+    title = ["over the curves, one standard deviation between them and within one"]
+    return Group(Fitted([*first, Column("", ended, words=True)]), Fitted(second, title), Prose(told(rows)))
 
 
-def _named(name: str, unit: str) -> str:
-    return column(name, unit) if unit else name
+def draw(rows: Sequence[Row]) -> Figure:
+    """Histograms of the quantities over the curves, and above the bars each curve with its interval."""
+    figure, panels = style.panels(len(SHOWN), height=4.4)
+    for axes, name in zip(panels, SHOWN, strict=True):
+        given = sorted(values(rows, name), key=lambda each: each.value)
+        if not given:
+            axes.set_axis_off()
+            continue
+        numbers = np.array([each.value for each in given])
+        exponent = exponent_of(float(np.median(np.abs(numbers))))
+        scaled, reach = numbers * 10.0**-exponent, float(np.ptp(numbers) or abs(numbers[0]))
+        ends = [
+            (
+                each.value - reach if each.low is None else each.low,
+                each.value + reach if each.high is None else each.high,
+            )
+            for each in given
+        ]
+        widths = np.clip(np.abs(np.array(ends).T - numbers), 0, 0 if name in FORCES else reach) * 10.0**-exponent
+        tops, *_ = axes.hist(scaled, bins="auto", color=style.SKY, edgecolor="white", label="curves")
+        heights = float(np.max(tops)) * np.linspace(1.1, 1.7, len(given))
+        axes.errorbar(scaled, heights, xerr=widths, fmt=".", color=style.BLUE, linewidth=0.8, label="intervals at 95 %")
+        named = f"{name.replace('_', ' ')}, {PREFIXES[exponent]}{given[0].unit}"
+        style.dress(axes, named, "curves", legend=None)
+    style.legend_below(figure, panels, 2)
+    return figure

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -29,14 +30,14 @@ NORMAL = float(norm.isf((1 - LEVEL) / 2))  # standard errors in half an interval
 BLIND = 1e6  # largest ratio of two standard errors
 FARTHEST = 12.0  # coordinates beyond which nothing is asked for: a factor of 1e5
 FEW = 5  # samples on either side of a division at least, of which a slope is known
-APART = math.log(3)  # of the Tabor parameters from which fits start
+APART = math.log(10) / 2  # of the Tabor parameters from which fits start
 NEARLY = 1.1  # chi square, in the least of those at these, up to which the least beside another one is looked for
 NEAR = 0.05  # of the distance between fits within and beyond a profile, to which its end is looked for
 NODES = (0.25, 0.5, 0.75)  # of the way from the best Tabor parameter to either end, where the profile is fitted
 FINE = 401  # places between these on which intervals are read off
 RANGE = 7.0  # logarithms beyond which an end is open: a factor of a thousand
 ROUNDS = 5  # of dividing runs and fitting; two are usual
-STEP, SHIFT = 1e-4, 0.01  # of derivatives by coordinates and ln tabor: they see past the kinks and errors of a curve
+STEP, SHIFT = 1e-3, 0.01  # of derivatives by coordinates and ln tabor: they see past the kinks and errors of a curve
 
 
 @dataclass(frozen=True)
@@ -262,7 +263,12 @@ class Problem:
     def jacobian(self, x: Array) -> Array:
         """Derivatives of the residuals by the coordinates."""
         here = self.residuals(x)
-        return np.column_stack([(self.residuals(x + step) - here) / STEP for step in STEP * np.eye(x.size)])
+        return np.column_stack([(self.residuals(x + step) - here) / step.max() for step in STEP * np.diag(self._sizes)])
+
+    @property
+    def _sizes(self) -> Array:
+        """Coordinates of a change that counts: of the contact point a spacing and a displacement."""
+        return np.array([1 + math.exp(-self.log_tabor) if name == "contact_point" else 1.0 for name in self.fitted])
 
     def settled(self, x: Array, *, loose: bool = False) -> Best:
         """Least squares where runs without a jump in the data are divided as the model has it; see `Data.divided`.
@@ -274,7 +280,14 @@ class Problem:
             divided = self.data.divided(self.branches(self.apparatus(x)), loose=loose and not i)
             problem = replace(self, data=divided)
             found = least_squares(
-                problem.residuals, x, problem.jacobian, method="lm", x_scale=0.1, xtol=1e-5, ftol=1e-7, max_nfev=100
+                problem.residuals,
+                x,
+                problem.jacobian,
+                method="lm",
+                x_scale=self._sizes / 10,
+                xtol=1e-5,
+                ftol=1e-7,
+                max_nfev=100,
             )
             x = found.x
             if runs == divided.runs:
@@ -444,6 +457,12 @@ def profiled(
         here = problem.at(at, np.zeros(len(problem.fitted)))
         every[at] = here.settled(first(here), loose=True)
     fits = {at: one for at, one in every.items() if is_likely(one)} or every
+    grid = sorted(every)
+    for way in (grid, grid[::-1]):  # a fit ends in the nearest of some minima, and its neighbour in another
+        for near, at in pairwise(way):
+            if near in fits:
+                one = problem.at(at, fits[near].x).settled(fits[near].x)
+                fits[at] = min(one, fits.get(at, one), key=lambda each: each.chi2)
     least, most = (round(math.log(limit), 9) for limit in limits)
     scan = Scan(problem, (least, most), fits)
     if least == most:

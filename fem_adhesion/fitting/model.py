@@ -26,6 +26,7 @@ FARTHEST = 1e5  # approach in (1 + tabor) eps to which the attraction is continu
 BULGE = 3 * np.pi**2 / (2.5 * 1.4**3.5)
 """B, by which the jump under fixed grips is at that of [G97]'s fit, (abs(alpha*) + 1)^(7/2) = 3 pi^2 tabor^(3/2)."""
 
+STIFFEST = 1e-4  # Tabor parameter up to which a sphere is rigid
 SOFTEST = 1e4  # Tabor parameter from which on curves are JKR's but for a hundredth of tabor eps
 WIDEST = 25.0  # contact radius in beta to which the compression is continued: a load of 2e4 R dgamma
 
@@ -38,7 +39,8 @@ def by_atlas(units: Units) -> Array:
 
     Both meet the atlas's end, the latter with its slope: 5 R dgamma and more, where Maugis's theory and it are apart
     by 0.1 tabor eps at most up to 100 R dgamma. Beyond the atlas's Tabor parameters the contact is JKR's, and before
-    it the far attraction raises a bulge, alpha* = 1 - y - B tabor^(3/2) y^(-5/2) at a gap of y eps.
+    it the far attraction raises a bulge, alpha* = 1 - y - B tabor^(3/2) y^(-5/2) at a gap of y eps. Below them the
+    sphere is rigid, and the atlas' least Tabor parameter serves: it yields by 0.01 eps under a load of R dgamma.
     """
     tabor = max(units.tabor, LEAST)
     if tabor > MOST:

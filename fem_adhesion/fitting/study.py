@@ -15,16 +15,15 @@ from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.fitting.inference import NORMAL, SCALES, Best, Data, Place, Problem, Profile, Run, profiled
 from fem_adhesion.fitting.measured import APPROACH, BASE, ForceCurve, read
-from fem_adhesion.fitting.model import SOFTEST, THEORIES, Apparatus, Other, Theory, by_atlas, by_jkr
+from fem_adhesion.fitting.model import SOFTEST, STIFFEST, THEORIES, Apparatus, Other, Theory, by_jkr
 from fem_adhesion.fitting.prepare import Prepared, prepare
 from fem_adhesion.fitting.traced import Traced, kind_of
-from halfspace.atlas.series import LEAST
 from halfspace.errors import InputError, Unsolved, tried
 from halfspace.limits import require_poisson
 from halfspace.values import Array
 
-TABORS = tuple(np.geomspace(LEAST, SOFTEST, 13))  # from which fits start; three times the next
-TRACED = LEAST, 100.0  # least and largest Tabor parameter to which traced models are followed
+TABORS = tuple(np.geomspace(STIFFEST, SOFTEST, 9))  # from which fits start; ten times the next
+TRACED = STIFFEST, 100.0  # least and largest Tabor parameter to which traced models are followed
 FAR_OFF = 3.0  # times the measured pull-off force that a fit's may be
 STRAYED = 5.0  # standard errors from what was known at which a quantity makes up for a wrong model, and is held
 CLEAR = 6.0  # difference of Akaike's criterion from which one model is clearly preferred: a likelihood ratio of 20
@@ -228,7 +227,7 @@ def _starts(theory: Theory, found: Mapping[str, Profile]) -> tuple[Sequence[floa
     """Tabor parameters from which a model's fits start, and the limits to which they go."""
     if isinstance(theory, Traced):
         return [found[ATLAS].best.tabor], TRACED
-    tabors = TABORS if theory is by_atlas else TABORS[-1:] if theory is by_jkr else TABORS[::2]
+    tabors = TABORS[-1:] if theory is by_jkr else TABORS
     return tabors, (tabors[0], tabors[-1])
 
 
@@ -283,16 +282,20 @@ def profile_of(
         theory,
         other,
         data_of(prepared, given["stiffness"].value),
-        Apparatus(**start, work_of_adhesion=work, spacing=1.0, contact_point=0.0),
+        Apparatus(**start, work_of_adhesion=work, spacing=1.0, contact_point=prepared.contact),
         ("work_of_adhesion", "contact_point", *moved),
         prior,
         given["stiffness"].value if prepared.curve.deflection_given else None,
     )
 
     def first(problem: Problem) -> Array:
-        """Coordinates of the contact point that the jumps or the force say; all others as given."""
+        """Coordinates of the contact point that the jumps or, without any, the force says; all others as given."""
         x = np.zeros(len(problem.fitted))
-        x[1] = problem.coordinate("contact_point", _first_contact(problem, prepared))
+        found = problem.branches(problem.apparatus(x))
+        base, force = found.contact[:, np.argmin(found.contact[1]) :]
+        shifts = [at.travel - found.place(int(at.jump == "off")) for at in problem.data.places]
+        shift = float(np.mean(shifts or prepared.contact - np.interp(0.0, force, base)))
+        x[1] = problem.coordinate("contact_point", prepared.contact + shift)
         return x
 
     def has_pull_off(one: Best) -> bool:
@@ -317,16 +320,6 @@ def _hertz(prepared: Prepared, start: Mapping[str, float], other: Other) -> floa
     if depth <= 0:
         return start["modulus"]
     return 0.75 * force / math.sqrt(start["radius"] * depth**3) * (1 - other.poisson**2)
-
-
-def _first_contact(problem: Problem, prepared: Prepared) -> float:
-    """Contact point at which the model's jumps are where the data's are; without any, as its force says."""
-    found = problem.branches(problem.apparatus(np.zeros(len(problem.fitted))))
-    if problem.data.places:
-        return float(np.mean([at.travel - found.place(int(at.jump == "off")) for at in problem.data.places]))
-    base, force = found.contact
-    least = int(np.argmin(force))
-    return prepared.contact - float(np.interp(0.0, force[least:], base[least:]))
 
 
 def values_of(profile: Profile) -> dict[str, Value]:

@@ -8,7 +8,6 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from fem_adhesion.common import record as common
 from fem_adhesion.common.facts import plain
 from fem_adhesion.common.terminal import Column, Fitted, Prose
 from fem_adhesion.fitting import words
@@ -66,11 +65,10 @@ def _models(fit: Fit) -> Fitted:
     return Fitted(columns, ["models, by Akaike's criterion over the least"])
 
 
-def record(fit: Fit, **options: Any) -> dict[str, Any]:
-    """Record for JSON."""
+def record(fit: Fit) -> dict[str, Any]:
+    """A fit as plain data."""
     degrees = fit.best.degrees
     return {
-        **common.record(None, {}, **options),
         **told(fit.values),
         "model": fit.model,
         "models": [

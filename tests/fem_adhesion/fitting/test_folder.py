@@ -12,9 +12,8 @@ from synthetic_curves import synthetic
 
 from fem_adhesion import cli
 from fem_adhesion.common.files import open_store
-from fem_adhesion.fitting.folder import Outcome, Source, code, outcome, run, sources, spreads, told, write_csv
+from fem_adhesion.fitting.folder import Source, code, outcome, run, sources, spreads, told, write_csv
 from fem_adhesion.fitting.model import Apparatus, Other
-from fem_adhesion.fitting.study import Value
 from halfspace.errors import InputError
 
 DATA = Path(__file__).parents[2] / "data" / "afm"
@@ -24,11 +23,10 @@ CALLS = []
 
 
 def _work(source, *, reading, radius, **_):
-    """Stand-in for a fit, which takes seconds: its work of adhesion is the number of the curve."""
+    """Stand-in for a fit, which takes seconds: its pull-off force is the radius that was asked for."""
     assert reading == READING
     CALLS.append(source)
-    value = Value(float(source.number + 1), 0.5, None, "J/m^2")
-    return Outcome(str(source.path), source.number, {"work_of_adhesion": value}, {"pull_off": radius, "noise": 0.0})
+    return source.named | {"pull_off": {"value": radius, "unit": "N"}}
 
 
 @pytest.fixture
@@ -63,34 +61,37 @@ def test_a_study_is_resumed_and_a_changed_file_fitted_again(curves, tmp_path):
         file.write("1,2\n")
     assert fitted() == first
     assert CALLS[3:] == [found[0]]
-    assert fitted(radius=20e-9)[0].forces["pull_off"] == 20e-9
+    assert fitted(radius=20e-9)[0]["pull_off"]["value"] == 20e-9
     assert len(CALLS) == 7
 
 
 def test_a_curve_that_cannot_be_used_is_told_and_ends_nothing(curves):
     (bad,) = run([Source(curves / "first.csv")], READING, ASKED, work=outcome, jobs=1)
-    assert "1 line of data" in bad.reason
-    assert not bad.values
+    assert "1 line of data" in bad["reason"]
+    assert "model" not in bad
 
 
 def _fitted(value, half):
-    return Outcome("a", 0, {"spacing": Value(value, value - half, value + half, "m")}, {"pull_off": 1e-9, "noise": 0.0})
+    return {
+        "misfit": {"found": False},
+        "spacing": {"value": value, "low": value - half, "high": value + half, "unit": "m"},
+    }
 
 
 def test_the_spread_between_curves_stands_beside_their_intervals():
     outcomes = [_fitted(1e-9 * (1 + i / 100), 1.96e-11) for i in range(101)]
-    spacing = next(each for each in spreads(outcomes) if each.name == "spacing")
-    assert (spacing.low, spacing.median, spacing.high) == pytest.approx((1.1e-9, 1.5e-9, 1.9e-9))
-    assert (spacing.between, spacing.within) == pytest.approx((0.34e-9, 1e-11))
+    spacing = next(each for each in spreads(outcomes) if each["name"] == "spacing")
+    assert [spacing[name] for name in ("low", "median", "high")] == pytest.approx([1.1e-9, 1.5e-9, 1.9e-9])
+    assert (spacing["between"], spacing["within"]) == pytest.approx((0.34e-9, 1e-11), rel=1e-4)
     assert "spacing differs between curves by 34 times" in told(outcomes)
     assert "differs" not in told([_fitted(1e-9 * (1 + i / 100), 1.96e-9) for i in range(101)])
 
 
 def test_the_table_leaves_open_ends_and_refused_curves_empty():
-    forces = {"pull_off": 3e-9, "noise": 4e-12}
-    open_end = Outcome("a", 0, {"spacing": Value(1e-9, None, 2e-9, "m")}, forces, "jkr", True)
+    spacing = {"value": 1e-9, "low": None, "high": 2e-9, "unit": "m"}
+    found = {"model": "jkr", "misfit": {"found": True}, "spacing": spacing, "pull_off": {"value": 3e-9, "unit": "N"}}
     file = io.StringIO()
-    write_csv([open_end, Outcome("b", 7, reason="no contact")], file)
+    write_csv([{"file": "a", "number": 0, **found}, {"file": "b", "number": 7, "reason": "no contact"}], file)
     first, second = csv.DictReader(file.getvalue().splitlines())
     assert (first["spacing_m"], first["spacing_low_m"], first["spacing_high_m"]) == ("1e-09", "", "2e-09")
     assert (first["pull_off_N"], first["model"], first["misfit"]) == ("3e-09", "jkr", "yes")
@@ -120,7 +121,7 @@ def test_the_command_fits_what_it_can_of_a_folder(curves, tmp_path, capsys):
     fits, times = json.loads(record.read_text()), [file.stat().st_mtime_ns for file in (kept / "cases").iterdir()]
     refused, fitted = csv.DictReader(table.read_text().splitlines())
     assert "give more points" in refused["reason"]
-    value = fits["curves"][1]["values"]["work_of_adhesion"]["value"]
+    value = fits["curves"][1]["work_of_adhesion"]["value"]
     assert float(fitted["work_of_adhesion_J/m^2"]) == value == pytest.approx(TRUTH.work_of_adhesion, rel=0.05)
     assert {each["name"] for each in fits["spread"]} == {"work_of_adhesion", "spacing", "pull_off", "noise"}
     assert cli.main(asked) == 1
@@ -132,7 +133,7 @@ def test_the_command_fits_what_it_can_of_a_folder(curves, tmp_path, capsys):
     ("arguments", "words"),
     [
         ([], "give a file or a folder"),
-        ([str(DATA / "sin_plate.ibw"), "--csv", "x.csv"], "--csv with one curve"),
+        ([str(DATA / "sin_plate.ibw"), "--resume", "x"], "--resume with one curve"),
         ([str(DATA / "workshop.csv")], "give the sensitivity in m/V"),
         ([str(DATA / "workshop.csv"), "--detector", "50nm"], "unit of the wrong kind"),
         ([str(DATA / "missing")], "missing"),
