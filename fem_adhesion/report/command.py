@@ -26,6 +26,8 @@ def add_options(command: Parser) -> None:
     command.add_argument("--walk", type=float, default=2.0, help="Tabor parameter of the curve shown", metavar="MU")
     for name, what in STUDIES.items():
         command.add_argument(f"--{name}", type=Path, help=f"directory with {what}", metavar="DIR")
+    fit = "fit of one curve or many, as fit --json writes it, with its figure beside it if that is FIT.svg"
+    command.add_argument("--fit", type=Path, help=fit, metavar="FIT.json")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -35,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.crosscheck.comparison import overall_verdict
     from fem_adhesion.curve import solve
     from fem_adhesion.report import walk
-    from fem_adhesion.report.page import Contents, page, section_of
+    from fem_adhesion.report.page import Contents, fit_section, page, section_of
     from fem_adhesion.scene import Scene
     from halfspace.errors import tried
     from halfspace.limits import require_rtol
@@ -47,15 +49,17 @@ def run(options: argparse.Namespace) -> int:
     directories = {name: directory for name, directory in named.items() if directory is not None}
     for name, directory in directories.items():
         section_of(name, directory)  # refuse a directory before any work
+    if options.fit:
+        fit_section(options.fit)
     with written_aside(options.html) as file, progress_bar() as step:
         cases = crosscheck.run(scenes, rtol=options.rtol, progress=step)
 
         def walked() -> Contents:
             curves = solve.solve(question, step)
-            return Contents(cases, curves, walk.walk(curves, progress=step), directories)
+            return Contents(cases, curves, walk.walk(curves, progress=step), directories, options.fit)
 
         found = tried(walked)
-        contents = found or Contents(cases, None, None, directories, lost=found.reason)
+        contents = found or Contents(cases, None, None, directories, options.fit, lost=found.reason)
         step("page", 0, 1)
         file.write(page(contents))
     verdict = "failed" if contents.lost else overall_verdict(cases)

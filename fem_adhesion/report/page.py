@@ -10,13 +10,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import final
+from typing import Any, final
 from xml.etree import ElementTree
 
 from matplotlib import rc_context
 
+from fem_adhesion.common import record
 from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.lines import UNSTABLE, smooth
+from fem_adhesion.common.numbers import engineering
 from fem_adhesion.common.page import Figure, Section, Table, data_rows, render, template_text
 from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck import comparison
@@ -41,13 +43,15 @@ WORDS = {
 class Contents:
     """What goes into a report: the cross-check, one curve, by both solvers and state by state, and other results.
 
-    Those are in directories by their commands' names; `lost` says why there is no curve, or is empty.
+    Those are in directories by their commands' names, and `fit` is the record of a fit; `lost` says why there is no
+    curve, or is empty.
     """
 
     cases: Sequence[Case]
     curves: Curves | None
     walk: Walk | None
     directories: Mapping[str, Path]
+    fit: Path | None = None
     lost: str = ""
 
 
@@ -69,7 +73,10 @@ def page(contents: Contents) -> str:
         walk_words=walk_words(walked) if walked else (),
         has_unstable=any((smooth(path).kind == UNSTABLE).any() for path in paths),
         levels=crosscheck_section(cases),
-        others=[section_of(name, contents.directories.get(name)) for name in SOURCES],
+        others=[
+            *(section_of(name, contents.directories.get(name)) for name in SOURCES),
+            fit_section(contents.fit),
+        ],
         settings=settings_section(cases, machine()),
         script=template_text("report", "walk.js"),
     )
@@ -223,6 +230,41 @@ def section_of(name: str, directory: Path | None) -> Section:
         wrong = [f"{n} {outcome}" for outcome, n in ended.items() if outcome not in WELL]
         warning = f"{', '.join(wrong)}." if wrong else ""
     return Section(name, title, warning=warning, paragraphs=paragraphs, figures=figures, tables=tables)
+
+
+def fit_section(file: Path | None) -> Section:
+    """Section from the record of a fit, of one curve or many, InputError if it is none; with the figure beside it."""
+    title, line = "Work of adhesion from measured curves", "fem-adhesion fit CURVE --json fit.json --plot fit.svg"
+    if file is None:
+        return Section("fit", title, missing=line)
+    found = record.read(file)
+    rows = found.get("curves", [found])
+    if not all("work_of_adhesion" in row or "reason" in row for row in rows):
+        raise InputError(f"{file} is no record of a fit; give the file that {line} wrote")
+    names = [name for name in ("work_of_adhesion", "spacing", "pull_off") if any(name in row for row in rows)]
+    lines = [
+        (
+            f"{Path(row['file']).name} {row['number'] or ''}".strip(),
+            *(_measured(row[name]) if name in row else "" for name in names),
+            row.get("model", row.get("reason", "")),
+            "yes" if row.get("misfit", {}).get("found") else "",
+        )
+        for row in rows
+    ]
+    heads = ("curve", *(f"{name.replace('_', ' ')}, 95 %" for name in names), "best model", "misfit")
+    cautions = [*found["told"], *found["warnings"]] if len(rows) == 1 and "told" in found else []
+    figure = file.with_suffix(".svg")
+    words = "Data, fit, residuals and contour; of many curves, histograms."
+    figures = [Figure(_svg(figure), words)] if figure.is_file() else []
+    tables = [Table("", "The fits", "", heads, lines, open=True)]
+    return Section("fit", title, paragraphs=cautions, figures=figures, tables=tables)
+
+
+def _measured(value: Mapping[str, Any]) -> str:
+    """Value with the ends of its interval, where they are known."""
+    low, high = (engineering(value[end], value["unit"]) if value.get(end) else "" for end in ("low", "high"))
+    ends = f"{low} to {high}" if low and high else f"above {low}" if low else f"below {high}" if high else ""
+    return f"{engineering(value['value'], value['unit'])}{f' ({ends})' if ends else ''}"
 
 
 def _svg(file: Path) -> bytes:

@@ -12,8 +12,10 @@ from synthetic_curves import synthetic
 
 from fem_adhesion import cli
 from fem_adhesion.common.files import open_store
+from fem_adhesion.common.numbers import engineering
 from fem_adhesion.fitting.folder import Source, code, outcome, run, sources, spreads, told, write_csv
 from fem_adhesion.fitting.model import Apparatus, Other
+from fem_adhesion.report.page import fit_section
 from halfspace.errors import InputError
 
 DATA = Path(__file__).parents[2] / "data" / "afm"
@@ -114,7 +116,7 @@ def test_the_command_fits_what_it_can_of_a_folder(curves, tmp_path, capsys):
     table, record, kept = (tmp_path / name for name in ("fits.csv", "fits.json", "kept"))
     (curves / "spectroscopy_two.nid").unlink()
     _write(curves / "second.csv")
-    names = ["--csv", str(table), "--json", str(record), "--plot", str(tmp_path / "fits.png"), "--resume", str(kept)]
+    names = ["--csv", str(table), "--json", str(record), "--plot", str(tmp_path / "fits.svg"), "--resume", str(kept)]
     asked = ["fit", str(curves), *CONTACT, "--models", "jkr", "--jobs", "1", *names]
     assert cli.main(asked) == 1
     assert "1 of 2 curves fitted, 0 with a misfit" in capsys.readouterr().out
@@ -124,9 +126,22 @@ def test_the_command_fits_what_it_can_of_a_folder(curves, tmp_path, capsys):
     value = fits["curves"][1]["work_of_adhesion"]["value"]
     assert float(fitted["work_of_adhesion_J/m^2"]) == value == pytest.approx(TRUTH.work_of_adhesion, rel=0.05)
     assert {each["name"] for each in fits["spread"]} == {"work_of_adhesion", "spacing", "pull_off", "noise"}
+    section = fit_section(record)
+    assert len(section.figures) == 1
+    (_, told, _, pull_off, model, misfit) = section.tables[0].rows[1]
+    assert told.startswith(engineering(value, "J/m^2"))
+    assert (pull_off.endswith("nN"), model, misfit) == (True, "atlas", "")
+    assert "give more points" in section.tables[0].rows[0][4]
     assert cli.main(asked) == 1
     assert json.loads(record.read_text())["curves"] == fits["curves"]
     assert [file.stat().st_mtime_ns for file in (kept / "cases").iterdir()] == times
+
+
+def test_the_report_refuses_what_is_no_fit(tmp_path):
+    (tmp_path / "other.json").write_text('{"schema": 1}')
+    for name in ("other.json", "missing.json"):
+        with pytest.raises(InputError, match="is no record of a fit"):
+            fit_section(tmp_path / name)
 
 
 @pytest.mark.parametrize(
