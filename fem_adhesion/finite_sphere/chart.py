@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from fem_adhesion.common import style
@@ -141,12 +140,12 @@ LINES: Mapping[float, tuple[str, Any, float, str]] = {  # relative deviations of
     0.001: ("black", style.DOTTED, 2.0, "0.96"),
 }
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-UNSOLVED: Mapping[str, tuple[str, str]] = {  # by how a contact ended: hatching, and what it means
-    "ContactTooWide": ("///", "no solution: contact as wide as the sphere"),
-    "left out": ("|||", rf"not tried: $R < {SMALLEST_SPHERE**0.5:g}\,\beta$"),
-    "died": ("xxx", "not solved: its process died"),
+UNSOLVED: Mapping[str, tuple[str, str]] = {  # by how a contact ended: marker, and what it means
+    "ContactTooWide": ("x", "no solution: contact as wide as the sphere"),
+    "left out": ("_", rf"not tried: $R < {SMALLEST_SPHERE**0.5:g}\,\beta$"),
+    "died": ("X", "not solved: its process died"),
 }
-ENDED = {"solved", "absent", ""}  # endings that are not hatched
+ENDED = {"solved", "absent", ""}  # endings that are not marked
 MARKERS: Mapping[str, tuple[str, str]] = {
     "silica": ("o", style.BLUE),
     "gold": ("s", style.ORANGE),
@@ -169,7 +168,7 @@ def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence
         field = field_of(rows, quantity, poisson)
         if field.tabor.size:
             _contours(axes, field)
-            _unsolved(axes, field)
+            _points(axes, field)
         _materials(axes)
         style.plain_ticks(axes.xaxis, (0.1, 0.3, 1, 3, 10))
         axes.set(xlabel=r"Tabor parameter $\mu$", ylabel=r"radius over spacing $R/\epsilon$", axisbelow=True)
@@ -182,7 +181,7 @@ def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence
 
 
 def _contours(axes: Any, field: Field) -> None:
-    """Contours, each with its error beside its right end, and dots where the deviation was solved for."""
+    """Contours, each with its error beside its right end."""
     for level, (colour, dashes, width, shade) in LINES.items():
         ratio = contour(field, level)
         known = np.flatnonzero(np.isfinite(ratio))
@@ -193,30 +192,18 @@ def _contours(axes: Any, field: Field) -> None:
         axes.plot(field.tabor, ratio, **look, label=f"{100 * level:g} %")
         at = float(field.tabor[known[-1]]), float(ratio[known[-1]])
         style.note(axes, f"{100 * level:g} %", at, (5, -3), color=colour, fontweight="bold", bbox=WHITE)
-    solved = np.isfinite(field.deviation)
-    if solved.any():
-        mu, rho = np.meshgrid(field.tabor, field.radius_ratio, indexing="ij")
-        axes.plot(mu[solved], rho[solved], ".", color="0.4", markersize=4, zorder=1.8, label="solved")
 
 
-def _unsolved(axes: Any, field: Field) -> None:
-    """Hatch what is nearest to the points that were not solved, each by how it ended."""
-    across, along = (_midways(values) for values in (field.tabor, field.radius_ratio))
+def _points(axes: Any, field: Field) -> None:
+    """Dots where the deviation was solved for, and a marker at every point that was not, by how it ended."""
+    mu, rho = np.meshgrid(field.tabor, field.radius_ratio, indexing="ij")
+    marked = {"solved": (np.isfinite(field.deviation), ".", 4)}
     for ending in sorted(set(field.ending.flat) - ENDED):
-        hatch, label = UNSOLVED.get(ending, ("...", f"not solved: {ending}"))
-        look: Any = {"facecolor": "white", "edgecolor": "0.45", "hatch": hatch, "linewidth": 0.0, "zorder": 1.5}
-        for i, j in np.argwhere(field.ending == ending):
-            width, height = across[i + 1] - across[i], along[j + 1] - along[j]
-            axes.add_patch(Rectangle((across[i], along[j]), width, height, label=label, **look))
-
-
-def _midways(values: Array) -> Array:
-    """Midways between neighbours on a logarithmic axis, and as far beyond the outermost two."""
-    x = np.log(values)
-    steps = np.diff(x) if x.size > 1 else np.log([4.0])
-    return np.asarray(
-        np.exp(np.concatenate([x[:1] - steps[0] / 2, x[:-1] + steps[: x.size - 1] / 2, x[-1:] + steps[-1] / 2]))
-    )
+        marker, label = UNSOLVED.get(ending, ("*", f"not solved: {ending}"))
+        marked[label] = field.ending == ending, marker, 7
+    for label, (at, marker, size) in marked.items():
+        if at.any():
+            axes.plot(mu[at], rho[at], marker, color="0.4", markersize=size, zorder=1.8, label=label)
 
 
 def _begun(borders: Sequence[Record], poisson: float | None) -> list[tuple[float, Estimate]]:
@@ -273,7 +260,7 @@ def _caption(study: Study) -> Iterator[str]:
     if shown:
         yield f"Jumps under fixed grips begin at mu = {', '.join(shown)}."
     if any(set(field.ending.flat) - ENDED for field in fields):
-        yield said("finite_sphere", "chart", "hatched")
+        yield said("finite_sphere", "chart", "unsolved")
     yield said("finite_sphere", "chart", "materials")
 
 
