@@ -1,5 +1,7 @@
 """What a command is asked to write means the same in all commands, and each says in one line what it wrote."""
 
+import csv
+import io
 import json
 import re
 from collections import defaultdict
@@ -64,9 +66,12 @@ def test_a_command_says_in_one_line_what_it_wrote(name, tmp_path, monkeypatch, c
     assert capsys.readouterr().out.count("(replaced)") == len(made)
 
 
-def test_the_line_leaves_standard_output_to_data(tmp_path, capsys):
-    table = tmp_path / "a.csv"
-    assert cli.main(["curve", "--tabor", "0.1", "--rtol", "1e-2", "--json", "-", "--csv", str(table)]) == 0
+def test_words_leave_standard_output_to_data(tmp_path, capsys):
+    table, line = tmp_path / "a.csv", ["curve", "--tabor", "0.1", "--rtol", "1e-2"]
+    assert cli.main([*line, "--json", "-", "--csv", str(table)]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out)["scene"]
     assert f"written: {table} {table}-metadata.json\n" in err
+    assert "pull-off" in err
+    assert cli.main([*line, "--csv", "-"]) == 0
+    assert next(csv.DictReader(io.StringIO(capsys.readouterr().out)))["solver"] == "half-space"

@@ -19,13 +19,11 @@ from fem_adhesion.speed.methods import QUANTITIES, Method, Step, all_methods
 from fem_adhesion.speed.page import read_earlier
 from fem_adhesion.speed.study import (
     GROWTHS,
-    Growth,
     SpeedStudy,
     Timing,
     Truth,
     measure,
     pareto_front,
-    timed,
 )
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.values import Estimate
@@ -209,12 +207,6 @@ def test_errors_that_the_truth_cannot_tell_are_equally_accurate():
     sooner = rung(1, 2e-9, floors={"pull_off": 2e-9})
     later = rung(2, 1e-9, floors={"pull_off": 1e-9})
     assert pareto_front([rung(0.5, 1e-3), later, sooner], "pull_off") == [rung(0.5, 1e-3), sooner]
-
-
-@pytest.mark.parametrize(("quantity", "size"), [("pull_off", 3.0), ("jump_on", 7.0), ("hysteresis", 3.0)])
-def test_errors_are_relative_to_value_or_scale(quantity, size):
-    truth = Truth("half-space", 1e-9, dict.fromkeys(QUANTITIES, Estimate(-3.0, 0.0)), 7.0)
-    assert truth.relative(quantity, 2.0) == 2.0 / size
 
 
 def test_each_cost_grows_by_its_own_exponent():
@@ -482,24 +474,6 @@ def test_the_time_of_each_solver_is_told_for_all_that_grows(run, page):
         (x, y), (s, t) = growth.at[:2], (float(row["seconds"]) for row in mine)
         found = float(told[growth.solver, growth.grows]["b"])
         assert found == pytest.approx(math.log(t / s) / math.log(y / x), abs=0.02)
-
-
-def test_the_exponent_of_a_growth_is_that_of_its_times():
-    seen = []
-    some = Growth("some", "digits", 3.0, (1.0, 2.0, 4.0), seen.append)
-
-    def seconds_of(work):
-        work()
-        return 0.5 * seen[-1] ** 3
-
-    growth = timed(some, seconds_of)
-    assert seen == [1.0, 2.0, 4.0]
-    assert growth.seconds == (0.5, 4.0, 32.0)
-    assert growth.exponent == pytest.approx(3)
-    study = dataclasses.replace(made_study([]), growths=(growth,))
-    row = section("\n".join(lines_of_page(study)), "How the time of the solvers")[0]
-    cells = ["some", "digits", "0.50 s at 1, 4.00 s at 2, 32.00 s at 4", "3.00", "3"]
-    assert list(row.values()) == cells
 
 
 def test_each_growth_solves_what_it_says(monkeypatch):

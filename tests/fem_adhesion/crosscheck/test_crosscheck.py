@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from made_up import AGREE, WIDE
 from whole_runs import COMPARE
 
 import fem_adhesion
@@ -208,17 +209,6 @@ def test_a_residual_is_no_better_known_than_the_equations():
 
 # --- verdicts ---
 
-VALUE = {"agree": 1.5, "disagree": 2.5, "inconclusive": 3.5}
-
-
-def _made_up(verdict):
-    """A row whose numbers are all distinct, with the verdict given."""
-    error, budget = (0.25, 0.125) if verdict == "inconclusive" else (0.03125, 0.0625)
-    value = VALUE[verdict]
-    difference = 0.5 if verdict == "disagree" else 0.015625
-    hs, fe = Estimate(value, error), Estimate(value + difference, error / 4)
-    return Row(f"made up to {verdict}", "eps", hs, fe, difference, budget)
-
 
 def test_agreement_is_within_estimates_within_the_budget():
     def verdict(difference, error, budget):
@@ -265,7 +255,7 @@ def test_scenes_come_in_their_order_whatever_ends_first(monkeypatch):
     def backwards(_work, parts, **_how):
         asked.extend(parts)
         for scene, solved in reversed(parts):
-            told = _made_up("agree") if solved else _made_up("inconclusive")
+            told = AGREE if solved else WIDE
             died = solved and scene == scenes[1]
             yield (scene, solved), WorkerDied("on purpose") if died else Case(scene, {}, (told,))
 

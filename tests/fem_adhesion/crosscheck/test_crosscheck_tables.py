@@ -15,7 +15,6 @@ from fem_adhesion.crosscheck.comparison import (
     columns,
     crosscheck_record,
     crosscheck_tables,
-    overall_verdict,
 )
 from fem_adhesion.report.page import LEVELS, crosscheck_section, settings_section, verdict_words
 from halfspace.values import Estimate
@@ -169,15 +168,6 @@ def test_compare_tells_the_verdict_in_text_record_and_exit_code(verdict, tmp_pat
     record = json.loads((tmp_path / "a.json").read_text())
     assert record["verdict"] == verdict
     assert [one["verdict"] for one in record["cases"]][-1] == verdict
-
-
-@pytest.mark.parametrize("rows", [[AGREE, WIDE, DISAGREE], [DISAGREE, WIDE, AGREE], [WIDE, AGREE], [AGREE]])
-def test_the_worst_row_is_the_verdict_of_case_and_all(rows):
-    order = ("disagree", "inconclusive", "agree")
-    wanted = next(name for name in order if any(row.verdict == name for row in rows))
-    assert case(*rows).verdict == wanted
-    assert overall_verdict([case(row) for row in rows]) == wanted
-    assert overall_verdict([*(case(row) for row in rows), FAILED]) == "failed"
 
 
 def test_mixed_verdicts_are_told_worst_first():

@@ -16,7 +16,6 @@ from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.bulk import bulk_compliance, excess_compliance
 from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CRITICAL, MODELS, Record, case_of
 from fem_adhesion.finite_sphere.chart import Field, contour, field_of, safe_from
-from fem_adhesion.finite_sphere.fit import FIXED_GRIPS, leading_terms
 from fem_adhesion.finite_sphere.page import SHOWN
 from fem_adhesion.finite_sphere.study import Study, plan
 from fem_adhesion.finite_sphere.table import CAUSES, borders, rows, write_tables
@@ -402,27 +401,6 @@ def test_a_half_space_never_good_enough_is_not_said_to_be(tmp_path):
 
 
 # --- what a deviation begins with ---
-
-
-def test_the_terms_are_those_of_the_cause():
-    assert set(leading_terms("profile", "pull_off_load")) == {"(beta/R)^2", "eps/R"}
-    assert "beta/R ln(beta/R)" in leading_terms("all", FIXED_GRIPS[0])
-    assert "beta/R ln(beta/R)" not in leading_terms("grip", FIXED_GRIPS[0])
-    assert "beta/R" not in leading_terms("grip", "pull_off_load", one_tabor=True)
-    assert "eps/R" not in leading_terms("body", "pull_off_load", one_tabor=True)
-    mu, rho = np.array([2.0]), np.array([50.0])
-    terms = {**leading_terms("all", "jump_on_load"), **leading_terms("grip", "pull_off_load")}
-    values = {name: float(term(mu, rho)[0]) for name, term in terms.items()}
-    assert values == pytest.approx(
-        {
-            "beta/R": 0.2,
-            "(beta/R)^2": 0.04,
-            "eps/R": 0.02,
-            "beta/R ln(beta/R)": 0.2 * log(0.2),
-            "(beta/R)^3": 0.2**3,
-            "(beta/R)^5": 0.2**5,
-        }
-    )
 
 
 # --- the yield of the body ---
