@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import is_fold
 from halfspace.values import Array, Valued
@@ -66,28 +67,30 @@ class Frame:
 
 def smooth(path: EquilibriumPath) -> Line:
     """Lines through the points of a path with their tangents."""
-    segments = path.finest_curve.segments
-    firsts = np.cumsum([0, *(len(segment.points) for segment in segments)])
-    values, found = [], []
-    for segment, first in zip(segments, firsts, strict=False):
-        between, rates = segment.between(BETWEEN)
-        stable = path.stable[first : first + len(segment.points)]
-        before, after = (np.repeat(part, BETWEEN) for part in (stable[:-1], stable[1:]))
-        values.append(between[:, [APPROACH, LOAD, CENTRAL_GAP]])
-        found.append(kinds(rates, *(np.append(part, stable[-1]) for part in (before, after))))
-    approach, load, central_gap = np.concatenate(values).T
-    return Line(approach, load, central_gap, np.concatenate(found))
+    segments, known = path.finest_curve.segments, iter(path.stable)
+    parts = []
+    for points in (segment.points for segment in segments):
+        s, stable = np.array([point.arclength for point in points]), np.array(list(islice(known, len(points))))
+        values, rates = (np.array([getattr(one, name)[:3] for one in points]) for name in ("observables", "rates"))
+        parts.append(through(s, values, rates, stable))
+    return Line(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Line)))
 
 
-def kinds(rates: Array, before: NDArray[np.bool_], after: NDArray[np.bool_]) -> NDArray[np.int8]:
-    """Kind of each point by the rates of approach and load along the curve, and what the computed points beside are.
+def through(s: Array, values: Array, rates: Array, stable: NDArray[np.bool_]) -> Line:
+    """Line through points at arclengths (n,), with approach, load and central gap there and their rates, (n, 3) each.
 
-    Between one that is stable under fixed grips and one that is not, what is stable are the states before the approach
-    turns: along them it rises.
+    Between a point that is stable under fixed grips and one that is not, what is stable are the states before the
+    approach turns: along them it rises.
     """
-    rising, loaded = rates[:, APPROACH] >= 0, rates[:, LOAD] * rates[:, APPROACH] > 0
-    stable = np.where(before == after, before, rising)
-    return np.where(stable, np.where(loaded, STABLE, GRIPS_ONLY), UNSTABLE).astype(np.int8)
+    forward = np.append(True, np.diff(s) > 0)  # two grids may have one point where one hands over to the next
+    s, values, rates, stable = s[forward], values[forward], rates[forward], stable[forward]
+    places = np.arange(BETWEEN * (s.size - 1) + 1) / BETWEEN
+    spline = CubicHermiteSpline(s, values, rates)
+    (approach, load, gap), (rise, more, _) = (spline(np.interp(places, np.arange(s.size), s), k).T for k in (0, 1))
+    before, after = stable[np.floor(places).astype(int)], stable[np.ceil(places).astype(int)]
+    kept = np.where(before == after, before, rise >= 0)
+    kind = np.where(kept, np.where(more * rise > 0, STABLE, GRIPS_ONLY), UNSTABLE).astype(np.int8)
+    return Line(approach, load, gap, kind)
 
 
 def folds(path: EquilibriumPath) -> Array:

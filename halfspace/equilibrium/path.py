@@ -86,21 +86,6 @@ class Segment(Valued):
     problem: Traceable
     points: tuple[Point, ...]
 
-    def between(self, count: int) -> tuple[Array, Array]:
-        """Observables and their rates, (n, 4) each, at so many places from one point to the next, to be drawn.
-
-        They lie on cubics with the tangents of the points; the contact radius is nan unless all points have one.
-        """
-        from scipy.interpolate import CubicHermiteSpline  # it takes as long to load as all else, and few need it
-
-        s = np.array([point.arclength for point in self.points])
-        values, rates = (np.array([getattr(point, name) for point in self.points]) for name in ("observables", "rates"))
-        known = np.isfinite(values).all(axis=0) & np.isfinite(rates).all(axis=0)
-        forward = np.append(True, np.diff(s) > 0)  # two grids may have one point where one hands over to the next
-        spline = CubicHermiteSpline(s[forward], np.where(known, values, 0)[forward], np.where(known, rates, 0)[forward])
-        fine = np.interp(np.arange(count * (s.size - 1) + 1) / count, np.arange(s.size), s)
-        return np.where(known, spline(fine), np.nan), np.where(known, spline(fine, 1), np.nan)
-
 
 @dataclass(frozen=True)
 class Steps:

@@ -94,6 +94,14 @@ def case():
         Row("second load", "J", Estimate(2.3456789, 3e-7), Estimate(2.3999999, 4e-7), 5.5e-2, 7.7e-5),
         Row("third gap", "eps", Estimate(3.456, 1.2e-3), Estimate(3.457, 3.4e-3), 5.6e-4, 7.8e-6),
         Row("fourth gap", "beta", Estimate(4.567, 1.3e-3), None, float("nan"), 8.8e-6),
+        Row(
+            "long: last gap",
+            "R dgamma eps",
+            Estimate(-0.4567891234, 3e-10),
+            Estimate(-0.4567891235, 4e-10),
+            1e-10,
+            1e-10,
+        ),
     )
     return made_up.case(*rows)
 
