@@ -105,28 +105,16 @@ def safe_from(field: Field, level: float) -> float:
     return float(field.radius_ratio[first]) if known.any() and first < field.radius_ratio.size else np.nan
 
 
-@dataclass(frozen=True)
-class Material:
-    """An elastic sphere against a rigid wall: what it is, and how large; its Poisson's ratio.
+def materials() -> Iterator[tuple[str, Units]]:
+    """Elastic spheres against a rigid wall, of ``data/materials.csv``: what each is, and how large; its units.
 
-    Its units have the Tabor parameter, R/eps and the Hamaker constant; source and note say where the values are from,
-    and what was assumed.
+    These have the Tabor parameter, R/eps and the Hamaker constant. The file says where the values are from.
     """
-
-    name: str
-    units: Units
-    poisson: float
-    source: str
-    note: str
-
-
-def materials() -> Iterator[Material]:
-    """All materials of the file ``data/materials.csv``."""
     for line in data_rows("finite_sphere", "materials.csv"):
         poisson, adhesion = float(line["poisson"]), float(line["work_of_adhesion_J_per_m2"])
         modulus = contact_modulus(float(line["young_Pa"]), poisson)
         units = Units(float(line["radius_m"]), modulus, adhesion, spacing_of(float(line["hamaker_J"]), adhesion))
-        yield Material(line["name"], units, poisson, line["source"], line["note"])
+        yield line["name"], units
 
 
 # The chart
@@ -226,22 +214,22 @@ def _no_jump(axes: Any, begun: Sequence[tuple[float, Estimate]]) -> None:
 
 def _materials(axes: Any) -> None:
     """Points with their sizes: of beads beside them, of tips at the left edge, an arrow beyond the right edge."""
-    for name, sizes in groupby(materials(), key=lambda material: material.name.split(",")[0]):
+    for name, sizes in groupby(materials(), key=lambda material: material[0].split(",")[0]):
         listed = list(sizes)
         marker, colour = MARKERS[name]
         look = {"marker": marker, "color": colour, "markeredgecolor": "black", "markersize": 8, "linewidth": 0.9}
-        inside = [m.units for m in listed if m.units.tabor < RIGHT]
+        inside = [units for _, units in listed if units.tabor < RIGHT]
         if inside:
             axes.plot([u.tabor for u in inside], [u.radius_ratio for u in inside], label=name, zorder=3, **look)
-        for material in listed:
-            mu, rho, radius = material.units.tabor, material.units.radius_ratio, material.units.radius
+        for which, units in listed:
+            mu, rho, radius = units.tabor, units.radius_ratio, units.radius
             size = f"{1e9 * radius:g} nm" if radius < 1e-6 else f"{1e6 * radius:g} µm"
             if mu > RIGHT:
                 arrow = {"arrowstyle": "-|>", "color": "black"}
                 text = f"{name}, {size},\n" rf"$\mu = {mu:.0f}$"
                 place = {"xytext": (-104, 0), "textcoords": "offset points", "va": "center", "fontsize": 9.5}
                 axes.annotate(text, (RIGHT, rho), arrowprops=arrow, **place)
-            elif "tip" not in material.name:
+            elif "tip" not in which:
                 style.note(axes, size, (mu, rho), (7, 4), zorder=4)
             elif name == "silica":
                 axes.text(LEFT * 1.06, rho, size, color="0.25", fontsize=9.5, va="center")

@@ -164,10 +164,6 @@ def _simple(problem: ContactProblem, start: Array, control: Control) -> Relaxed:
     return relaxation.simple(problem, start, control, relaxation=c, tolerance=1e-8)
 
 
-def _greenwood(problem: ContactProblem, start: Array, control: Control) -> Relaxed:
-    return relaxation.greenwood(problem, start, control, tolerance=1e-5)
-
-
 def pull_off_by_sweep(problem: ContactProblem, relax: Relaxation) -> float:
     """Least load met under fixed grips, refined by parabolas, from a start with zero central gap.
 
@@ -237,7 +233,7 @@ SOLVERS: Mapping[str, Solver] = {
 }
 HALF_SPACE: Mapping[str, Callable[..., Solved]] = {
     "simple relaxation": partial(_relaxed, _simple),
-    "Greenwood's iteration": partial(_relaxed, _greenwood),
+    "Greenwood's iteration": partial(_relaxed, partial(relaxation.greenwood, tolerance=1e-5)),
     "uniform bands": partial(_on_grid, compliance.bands),
     "uniform triangles": partial(_on_grid, compliance.triangles),
     "graded triangles": partial(_on_grid, compliance.triangles),
