@@ -175,13 +175,9 @@ MATERIAL = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--w
     ("arguments", "message"),
     [
         ([], "--radius, --modulus, --poisson, --work-of-adhesion, --spacing or --hamaker missing"),
-        (MATERIAL, "--spacing or --hamaker missing"),
         ([*MATERIAL, "--spacing", "-0.3nm"], "spacing = -0.3nm is outside 0 < spacing < inf"),
-        ([*MATERIAL, "--spacing", "1nm", "--hamaker", "1zJ"], "--spacing and --hamaker are given"),
-        ([*MATERIAL, "--spacing", "1nm", "--counter-poisson", "0.3"], "counter_modulus = None"),
         ([*MATERIAL, "--spacing", "1nm", "--tabor", "1"], "unrecognized arguments: --tabor 1"),
         ([*MATERIAL, "--spacing", "1nm", "--json", "a.svg", "--plot", "other/../a.svg"], "is given for two outputs"),
-        ([*MATERIAL, "--spacing", "1nm", "--plot", "-"], "limit: one of .png, .svg, .pdf"),
         ([*MATERIAL, "--hamaker", "1nm"], "hamaker = 1nm has a unit of the wrong kind, limit: a multiple of J"),
         (
             [*MATERIAL, "--spacing", "0.001nm", "--grip", "bonded"],
