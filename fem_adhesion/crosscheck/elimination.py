@@ -37,7 +37,7 @@ def rows(scene: Scene, path: EquilibriumPath) -> Iterator[Row]:
         return
     approach = (path.events["jump_on"].approach if "jump_on" in path.events else 0.0) - USUAL.before
     mesh, degree = block_grid(*USUAL.block), USUAL.block_degree
-    contact = Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), scene.tabor, endless=False)
+    contact = Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), scene.tabor)
     start = contact.undeformed(approach)
     whole = newton(contact, start, at_approach(start))
     whole = newton(contact, whole.y, at_approach(start))  # its Newton ends at the square of its last step

@@ -120,7 +120,6 @@ def _apart(contact: Contact, radius: float) -> list[float]:
         return mu * mean(body.rise(body.displaced(tension)))
 
     load, slope = (-body.integral(values) for values in tensions)
-    load -= mu * float(contact.rim[1] @ contact.law.tension(1 + _made_up(contact.rim[0] / radius)[0]))
     raised, further = map(rise, tensions)
     residual, tangent = mean(H + USUAL.approach - mu * contact.height) + raised, mean(dH + USUAL.change) + further
     sizes = [of(np.abs(values)) for of in (rise, body.integral) for values in tensions]
@@ -278,12 +277,11 @@ def _state(contact: Contact, event: Located) -> StateInWeakForm:
 
 
 def _gaps(event: Located, contact: Contact) -> Array:
-    """Gaps H of a state of the finite elements; beyond the cells of a block it deflects as under a point load."""
-    radii, (approach, load) = contact.body.radii, event.point.observables[:2]
-    inside = gaps_at(event, radii)
-    beyond = -approach + event.problem.tabor * (contact.height + load / (np.pi * radii))
+    """Gaps H of a state of the finite elements; beyond their cells what yields deflects as under a point load."""
+    radii, yields, (approach, load) = contact.body.radii, contact.body.yields, event.point.observables[:2]
+    beyond = -approach + event.problem.tabor * (contact.height + yields * load / (np.pi * radii))
     extent = event.problem.interface.operator_at(event.problem.surface_state(event.point.x)).extent
-    return np.where((radii < extent) | (not contact.endless), inside, beyond)
+    return np.where(yields & (radii < extent), gaps_at(event, radii), beyond)
 
 
 def _turn(name: str, state: Equilibrium | None) -> Equilibrium | None:

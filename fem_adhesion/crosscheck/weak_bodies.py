@@ -23,7 +23,16 @@ from fem_adhesion.discretise import finest_length
 from fem_adhesion.mesh.file import is_straight, refined
 from fem_adhesion.mesh.spheres import with_contact_to
 from fem_adhesion.scene import Scene
-from fem_adhesion.weak_form.body import TRIANGLES, Body, discretise, fine_within, half_space, on_ground, opposed
+from fem_adhesion.weak_form.body import (
+    TRIANGLES,
+    Body,
+    discretise,
+    fine_within,
+    half_space,
+    on_ground,
+    opposed,
+    with_rigid,
+)
 from fem_adhesion.weak_form.contact import Contact, Law, lennard_jones
 from halfspace.elastic import grid
 from halfspace.elastic.layers import surface_compliance
@@ -84,7 +93,7 @@ def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float, rea
     tip = float(2.0 ** np.floor(np.log2(first))) if np.isfinite(first) else np.inf
     reach = float(2.0 ** np.ceil(np.log2(reach / radius)))
     body = _half_space(_finest(scene, radius), size, int(degree), scene.poisson, tip, reach)
-    return Contact(body.scaled(radius), scene.tabor, heights(scene), law=law_of(scene))
+    return Contact(body.scaled(radius), scene.tabor, heights(scene), law_of(scene))
 
 
 def _finest(scene: Scene, radius: float) -> float:
@@ -102,7 +111,7 @@ def _on_given_mesh(scene: Scene, degree: int, *_: float) -> Contact:
     """Contact of a user's mesh."""
     body = discretise(_given_mesh(scene), degree, scene.body.regions, slides=scene.body.held == "sliding")
     R, _ = lengths(scene)
-    return Contact(body, scene.tabor, lambda _: R * body.depths, False, law=law_of(scene))
+    return Contact(body, scene.tabor, lambda _: R * body.depths, law_of(scene))
 
 
 @lru_cache(maxsize=2)
@@ -137,16 +146,16 @@ def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) 
     mesh = scene.body.mesh(R, core, length, how)
     if scene.counter is None:
         body = _standing(scene.body, mesh, degree)
-        contact = Contact(body, scene.tabor, heights(scene), False, law=law_of(scene))
-        return replace(contact, rim=_flat_rim(body.rim, R)) if scene.body.layered else contact
+        body = with_rigid(body, *_flat_rim(body.rim, R)) if scene.body.layered else body
+        return Contact(body, scene.tabor, heights(scene), law_of(scene))
     end, other = float(coordinate.radius(core[-1:])[0][0]), scene.counter
     meshes = mesh, other.facing(bodies[1], core, length, R, how)
     first, second = (
         _standing(body, with_contact_to(one, end), degree)
         for body, one in zip((scene.body, other), meshes, strict=True)
     )
-    body = opposed(first, second, scene.share or 0.0)
-    return Contact(body, scene.tabor, heights(scene), False, _rim(first.rim, R), law_of(scene))
+    body = with_rigid(opposed(first, second, scene.share or 0.0), *_rim(first.rim, R))
+    return Contact(body, scene.tabor, heights(scene), law_of(scene))
 
 
 def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float) -> float:

@@ -13,12 +13,12 @@ is stationary in u where, for all v, with w' = sigma the tension,
 
     F(u, alpha) v = a(u, v) - mu int sigma(h) v_z dA = 0;     tangent:  a(u, v) + mu^2 int sigma'(h) u_z v_z dA.
 
-The curve is followed through its folds in arclength, with alpha as a further unknown and the step as a further
-equation; an event exchanges that equation for its own: d(alpha)/ds = 0 at jump_on and jump_off, dW/ds = 0 at pull_off,
-W = 0 at zero_load.
+The curve is followed through its folds by a number that does not turn back there: the contact radius, or the gap on
+the axis before there is one. It is prescribed by a further equation, with alpha as a further unknown. Events are roots
+along it: d(alpha) = 0 at jump_on and jump_off, dW = 0 at pull_off, W = 0 at zero_load.
 
 In the order of reading: `body` (the forms, the mesh, what holds a body), `contact` (law, profile, gaps, load, energy),
-`newton` (Newton's method with a border, equilibria, where they turn), `curve` (arclength, events, a scene's curve with
+`newton` (Newton's method with a border, equilibria, where they turn), `curve` (the path, events, a scene's curve with
 its errors), `settings` (numbers of the algorithms). The check of the solvers
 (`fem_adhesion.crosscheck.from_scratch`) goes the same road up to `newton`. Bodies with a length of their own come to it
 with the meshes of the solver that it checks, see `fem_adhesion.crosscheck.weak_bodies`.

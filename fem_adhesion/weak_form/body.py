@@ -75,6 +75,8 @@ def elasticity(basis: Any, **moduli: Array) -> sparse.csr_array:
 class Body(Valued):
     """An elastic body of revolution on a mesh, with n unknowns and q points on its contact surface.
 
+    Points beyond the mesh attract and do not yield, see `with_rigid`.
+
     Attributes
     ----------
     stiffness : (n, n) sparse array
@@ -84,9 +86,9 @@ class Body(Valued):
     radii, area : (q,) array
         Of the points, in beta, and their parts of dA, see `discretise`.
     depths : (q,) array
-        How deep the points are under the pole, in beta.
+        How deep the points are under the pole, in beta; zero at those beyond the mesh.
     rim : float
-        Radius at which the surface ends.
+        Radius at which the mesh ends.
     """
 
     stiffness: sparse.csc_array
@@ -119,6 +121,11 @@ class Body(Valued):
     def softened(self, slope: Array) -> Any:
         """Factors of the matrix of a(u, v) + int slope u_z v_z dA."""
         return factorise(self.stiffness + self.values.T @ sparse.diags_array(self.area * slope) @ self.values)
+
+    @property
+    def yields(self) -> NDArray[np.bool_]:
+        """Which of the points move with the mesh, (q,)."""
+        return np.asarray(np.diff(self.values.indptr) > 0)
 
     def scaled(self, a: float) -> Body:
         """The same body a times as large: its stiffness grows as its size."""
@@ -180,15 +187,13 @@ def _mapping(mesh: Any) -> Any:
 
 def surface_values(surface: Any) -> sparse.csr_array:
     """u_z at the points of a boundary basis, facet by facet, from all radial and vertical displacements."""
-    points = np.arange(surface.dx.size).reshape(surface.dx.shape)
-    parts = [
-        (points, np.broadcast_to(surface.N + dofs[:, None], points.shape), np.broadcast_to(function, points.shape))
-        for (function,), dofs in zip(surface.basis, surface.element_dofs, strict=True)
-    ]
-    rows, columns, entries = (np.concatenate([part[k].ravel() for part in parts]) for k in range(3))
-    values = sparse.coo_array((entries, (rows, columns)), shape=(points.size, 2 * surface.N)).tocsr()
+    functions = np.array([np.broadcast_to(one, surface.dx.shape) for (one,) in surface.basis])
+    rows = np.broadcast_to(np.arange(surface.dx.size).reshape(surface.dx.shape), functions.shape)
+    columns = np.broadcast_to(surface.N + surface.element_dofs[:, :, None], functions.shape)
+    entries = functions.ravel(), (rows.ravel(), columns.ravel())
+    values = sparse.csr_array(entries, shape=(surface.dx.size, 2 * surface.N))
     values.eliminate_zeros()
-    return sparse.csr_array(values)
+    return values
 
 
 def on_spring(body: Body, stiffness: float) -> Body:
@@ -209,6 +214,21 @@ def opposed(first: Body, second: Body, share: float) -> Body:
     values = sparse.csr_array(sparse.hstack([first.values[a], second.values[b]]))
     stiffness = sparse.csc_array(sparse.block_diag([first.stiffness / (1 - share), second.stiffness / share]))
     return Body(stiffness, values, first.radii[a], first.area[a], first.depths[a], first.rim)
+
+
+def with_rigid(body: Body, radii: Array, area: Array) -> Body:
+    """Add points beyond the mesh, at radii and with parts of dA, that attract and do not yield."""
+    values = sparse.vstack([body.values, sparse.csr_array((radii.size, body.values.shape[1]))])
+    r, dA, depths = np.append(body.radii, radii), np.append(body.area, area), np.append(body.depths, 0 * radii)
+    return replace(body, values=sparse.csr_array(values), radii=r, area=dA, depths=depths)
+
+
+def to_infinity(body: Body) -> Body:
+    """Let the surface go on beyond the mesh for ever: Gauss's rule in s on r = rim/s^4, where little is far away."""
+    s, ds = np.polynomial.legendre.leggauss(40)
+    s, ds = (1 + s) / 2, ds / 2
+    r = body.rim / s**4
+    return with_rigid(body, r, 2 * np.pi * r**2 * 4 * ds / s)
 
 
 def last(size: int) -> Array:
@@ -241,7 +261,8 @@ def half_space(
     r = fine_within(reach, np.concatenate([[0.0], core[::-1], inner, [1.0], 1 + steps]), how.within)
     mesh = box(r, growing(min(finest, tip), size, how.growth))
     body = discretise(mesh, degree, [(poisson, 1.0)], plate=True)
-    return on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
+    body = on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
+    return to_infinity(body)
 
 
 def box(r: Array, z: Array) -> Any:

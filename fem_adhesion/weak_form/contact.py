@@ -78,16 +78,12 @@ def sphere(r: Array, R: float) -> Array:
 
 # The contact
 
-POINTS, FAR = 40, 4  # of the rule from the rim to infinity, and the power by which they crowd there
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Contact(Valued):
     """A body under a rigid surface that attracts it.
 
-    The body is in beta, `tabor` is mu, and the heights are z of the undeformed surface at radii in beta. If endless,
-    the surfaces go on for ever beyond the mesh, as over a half-space; the rim, (k,) each, has radii and parts of dA of
-    points beyond the mesh of a body with an end that attract and do not yield.
+    The body is in beta, `tabor` is mu, and the heights are z of the undeformed surface at radii in beta.
 
     A state y (q + 1,) has the gaps h at the points and, last, the approach.
     """
@@ -95,8 +91,6 @@ class Contact(Valued):
     body: Body
     tabor: float
     heights: Heights = paraboloid
-    endless: bool = True
-    rim: tuple[Array, Array] = (np.empty(0), np.empty(0))
     law: Law = LENNARD_JONES
 
     @property
@@ -109,22 +103,6 @@ class Contact(Valued):
         """Height z at the points."""
         return self.heights(self.body.radii)
 
-    @cached_property
-    def rigid(self) -> tuple[Array, Array]:
-        """Radii and parts of dA of the points beyond the mesh; those on to infinity crowd there, where little is."""
-        if not self.endless:
-            return self.rim
-        s, ds = np.polynomial.legendre.leggauss(POINTS)
-        s, ds = (1 + s) / 2, ds / 2
-        r = self.body.rim / s**FAR
-        return r, 2 * np.pi * r**2 * FAR * ds / s
-
-    @cached_property
-    def _far_height(self) -> Array:
-        """Height z at the rigid points."""
-        r = self.rigid[0]
-        return self.heights(r) if r.size else r
-
     def undeformed(self, approach: float) -> Array:
         """State y (q + 1,) of undeformed surfaces."""
         return np.append(1 - approach + self.tabor * self.height, approach)
@@ -133,22 +111,13 @@ class Contact(Valued):
         """Gaps (q,) that the displacements u leave."""
         return np.asarray(self.undeformed(approach)[:-1] - self.tabor * self.body.rise(u))
 
-    def _beyond(self, approach: float) -> Array:
-        """Gaps at the rigid points."""
-        return np.asarray(1 - approach + self.tabor * self._far_height)
-
     def load(self, y: Array) -> float:
         """W in R dgamma, positive in compression, of a state."""
-        return -self.tabor * self.body.integral(self.law.tension(y[:-1])) + self.load_beyond(y[-1])
-
-    def load_beyond(self, approach: float) -> float:
-        """Part of the load that is beyond the mesh."""
-        return -self.tabor * float(self.rigid[1] @ self.law.tension(self._beyond(approach)))
+        return -self.tabor * self.body.integral(self.law.tension(y[:-1]))
 
     def load_row(self, y: Array) -> Array:
         """Derivative of the load by the state, (q + 1,)."""
-        beyond = float(self.rigid[1] @ self.law.slope(self._beyond(y[-1])))
-        return self.tabor * np.append(-self.body.area * self.law.slope(y[:-1]), beyond)
+        return -self.tabor * np.append(self.body.area * self.law.slope(y[:-1]), 0.0)
 
     def displaced(self, h: Array) -> Array:
         """Displacements by the tensions of given gaps, whether or not these leave the gaps."""
@@ -156,10 +125,5 @@ class Contact(Valued):
 
     def energy(self, u: Array, approach: float) -> float:
         """Potential energy in R dgamma eps, less that of the undeformed surfaces in touch, which may be infinite."""
-        inside = float(u @ (self.body.stiffness @ u)) / 2
-        inside += self.body.integral(self._released(self.left_by(u, approach), self.height))
-        return self.tabor * (inside + float(self.rigid[1] @ self._released(self._beyond(approach), self._far_height)))
-
-    def _released(self, h: Array, height: Array) -> Array:
-        """Potential per dA at gaps h less that of the undeformed surfaces in touch."""
-        return np.asarray(self.law.potential(h) - self.law.potential(1 + self.tabor * height))
+        released = self.law.potential(self.left_by(u, approach)) - self.law.potential(1 + self.tabor * self.height)
+        return self.tabor * (float(u @ (self.body.stiffness @ u)) / 2 + self.body.integral(released))

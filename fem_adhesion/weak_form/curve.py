@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,10 +18,10 @@ from scipy.optimize import newton as secant
 from fem_adhesion.scene import Scene, require_scene
 from fem_adhesion.weak_form.body import Array, box, discretise, growing
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.newton import Equilibrium, along, at_approach, at_load, even, newton, on_axis
+from fem_adhesion.weak_form.newton import Equilibrium, along, even, gap_at, newton, on_axis
 from fem_adhesion.weak_form.settings import USUAL, Settings
 from halfspace.equilibrium.events import Event, Tolerance, points_of, tolerance_told
-from halfspace.errors import InputError, NotConverged, Unsolved, tried
+from halfspace.errors import InputError, NotConverged, tried
 from halfspace.laws import LENNARD_JONES
 from halfspace.limits import require_between
 from halfspace.profiles import Paraboloid
@@ -33,37 +34,22 @@ LIMITS = {"tabor": (0.02, 5.0), "poisson": (0.0, 0.49), "rtol": (1e-4, 0.1), "to
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Point(Valued):
-    """An equilibrium and the direction of the path there.
+    """An equilibrium at the place s of a `Path`.
 
-    Attributes
-    ----------
-    state : Equilibrium
-        The equilibrium.
-    direction, row : (q + 1,) array
-        Unit tangent of the path, and the row <tangent, .> of the inner product.
+    The rates (3,) are those of approach, load and central gap along the path, per change of approach and central gap;
+    it is stable under fixed grips or not.
     """
 
+    s: float
     state: Equilibrium
-    direction: Array
-    row: Array
+    rates: Array
+    stable: bool
 
     @cached_property
     def observables(self) -> Array:
         """Approach and load, central gap H(0) in eps, contact radius in beta (nan without contact)."""
-        state = self.state
-        return np.array([state.approach, state.load, state.central_gap, state.contact_radius])
-
-    @cached_property
-    def rates(self) -> Array:
-        """Change of approach, load and central gap along the path."""
-        contact, direction = self.state.contact, self.direction
-        load = float(contact.load_row(self.state.y) @ direction)
-        return np.array([direction[-1], load, on_axis(contact, direction[:-1])])
-
-    @property
-    def stable(self) -> bool:
-        """Whether the state is stable under fixed grips."""
-        return self.state.unstable == 0
+        state, radius = self.state, math.sqrt(self.s) if self.s > 0 else math.nan
+        return np.array([state.approach, state.load, state.central_gap, radius])
 
 
 Condition = Callable[[Point], float]
@@ -72,79 +58,52 @@ CONDITIONS: Mapping[str, Condition] = {
     "pull_off": lambda point: float(point.rates[1]),
     "zero_load": lambda point: point.state.load,
 }
-"""What vanishes at an event: d(alpha)/ds at a jump or a further fold, dW/ds at pull-off, W at no load."""
-
-
-def condition_of(name: str) -> Condition:
-    """What vanishes at the event of a name."""
-    return CONDITIONS.get(name, CONDITIONS["fold"])
+"""What vanishes at an event: the change of the approach at a jump or a further fold, of the load at pull-off, W at no
+load."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Path(Valued):
-    """The equilibria of a contact; the mean square of a change of the gap on a disc measures their arclength.
+    """The equilibria of a contact, each known by one number s that grows all along, while approach and load turn back.
 
-    The radius of the disc is in beta.
+    Apart, s < 0, the gap on the axis is that of the largest tension less s, in eps; in contact sqrt(s) is the contact
+    radius in beta, where the gap is that of the largest tension.
     """
 
     contact: Contact
-    disc: float
     how: Settings = USUAL
 
-    @cached_property
-    def inner(self) -> Array:
-        """Weights (q + 1,) of <y, y'> = alpha alpha' + mean over the disc of h h'."""
-        body = self.contact.body
-        return np.append(np.where(body.radii < self.disc, body.area, 0.0) / (np.pi * self.disc**2), 1.0)
-
-    def point(self, state: Equilibrium, onward: Array) -> Point:
-        """Point of the path at an equilibrium, in the direction in which a row rises."""
-        rate = state.rate
-        row = self.inner * rate
-        size = np.copysign(np.sqrt(row @ rate), onward @ rate)
-        return Point(state, rate / size, row / size)
-
-    def onward(self, a: Point, s: float) -> Point:
-        """Point an arclength past another, from a start on the tangent there."""
-        if s == 0:
-            return a
-        reached = along(a.row, float(a.row @ a.state.y) + s)
-        return self.point(newton(self.contact, a.state.y + s * a.direction, reached, self.how.most_along), a.row)
+    def at(self, s: float, y: Array) -> Point:
+        """Point at a place, from a state nearby."""
+        row = np.append(gap_at(self.contact.body.radii, math.sqrt(max(s, 0.0))), 0.0)
+        state = newton(self.contact, y, along(row, self.contact.law.edge - min(s, 0.0)))
+        rates = np.array([1.0, state.stiffness, on_axis(self.contact, state.rate[:-1])])
+        rates *= -np.sign(row @ state.rate) / np.hypot(rates[0], rates[2])
+        return Point(s, Equilibrium(self.contact, state.y), rates, state.unstable == 0)  # less its large factors
 
     def follow(self, approach: float, to_load: float) -> list[Point]:
         """Points from an approach of separated surfaces, through every fold, to a compressive load."""
-        start, how = self.contact.undeformed(approach), self.how
-        points = [self.point(newton(self.contact, start, at_approach(start)), np.eye(1, start.size, start.size - 1)[0])]
-        s = how.first
-        while points[-1].state.load < to_load:
-            before = points[-1]
-            if s < how.shortest or len(points) > how.most_points:
-                at = f"alpha = {before.state.approach:.4g} eps"
+        edge, how = self.contact.law.edge, self.how
+        points, step = [self.at(edge - 1 + approach, self.contact.undeformed(approach))], np.inf
+        while (last := points[-1]).state.load < to_load:
+            step = min(2 * step, how.longest * (edge - last.s if last.s < 0 else 1 + last.s))
+            found = tried(self.at, last.s + step, last.state.y)
+            if found:
+                points.append(found)
+            elif step > how.shortest:
+                step /= 4
+            else:
+                at = f"alpha = {last.state.approach:.4g} eps"
                 raise NotConverged(f"the weak form's path ends at {at}; try another to_load or a smaller tabor")
-            point = tried(self.onward, before, s)
-            if isinstance(point, Unsolved):
-                s /= 2
-                continue
-            opened = abs((1 + point.observables[2]) / (1 + before.observables[2]) - 1) / how.opening
-            # The chord turns half as much as the tangent: a long one has led to another part of the path.
-            chord = s**2 / float(self.inner @ (point.state.y - before.state.y) ** 2)
-            turned = (1 - min(float(before.row @ point.direction), 2 * chord - 1)) / (1 - how.turn)
-            if max(opened, turned) > 1 or turns_twice(before, point):
-                s /= 2
-                continue
-            points.append(point)
-            s *= float(np.clip(how.suits / max(opened, turned), 0.5, 2.0))
-        last, end = points[-1], at_load(self.contact, to_load)
-        return [*points[:-1], self.point(newton(self.contact, last.state.y, end), last.row)]
+        return [*points[:-1], *self.located(points[-2:], lambda point: point.state.load - to_load)]
 
     def located(self, points: Sequence[Point], condition: Condition) -> list[Point]:
         """All points at which a condition changes its sign, in order; the state is solved for at every trial."""
         found = []
         for a, b in pairwise(points):
             if condition(a) * condition(b) < 0:
-                length = float(a.row @ (b.state.y - a.state.y))
-                root = brentq(lambda s, a=a: condition(self.onward(a, s)), 0.0, length, xtol=self.how.root * length)
-                found.append(self.onward(a, root))
+                root = brentq(lambda s, y=a.state.y: condition(self.at(s, y)), a.s, b.s, xtol=self.how.root)
+                found.append(self.at(root, a.state.y))
         return found
 
     def events(self, points: Sequence[Point]) -> dict[str, Point]:
@@ -158,30 +117,14 @@ class Path(Valued):
             found |= {f"fold_{n}": point for n, point in enumerate(folds[1:-1], 2)}
         return found | ({"zero_load": zeros[-1]} if zeros else {})
 
-    def taken_over(self, point: Point) -> Point:
-        """Point on the same cells by elements of another degree, on its plane across the path."""
-        y, direction = (carried(self.contact, point.state.contact, each) for each in (point.state.y, point.direction))
-        row = self.inner * direction
-        return self.point(newton(self.contact, y, along(row, float(row @ y))), row)
-
-    def event_near(self, point: Point, condition: Condition) -> Point:
-        """Event near a point, by the secant in the arclength."""
-        how = self.how
-        s = secant(lambda s: condition(self.onward(point, s)), 0.0, x1=how.beside, tol=how.root * how.first)
-        return self.onward(point, float(s))
-
-
-def carried(onto: Contact, source: Contact, y: Array) -> Array:
-    """State, or direction, at the points of other elements."""
-    return np.append(even(source.body.radii, y[:-1])(onto.body.radii), y[-1])
-
-
-def turns_twice(a: Point, b: Point) -> bool:
-    """Whether approach or load turn and turn back between two points, by the cubics with their values and rates."""
-    means = (b.observables - a.observables)[:2] / (a.row @ (b.state.y - a.state.y))
-    before, after = a.rates[:2], b.rates[:2]
-    halfway = 1.5 * means - (before + after) / 4
-    return bool(((before * after > 0) & (before * halfway < 0)).any())
+    def again(self, point: Point, event: str = "") -> Point:
+        """Point at the same place on the same cells by elements of another degree, or the event near it."""
+        there, state, s = self.contact.body.radii, point.state, point.s
+        y = np.append(even(state.contact.body, state.y[:-1])(there), state.approach)
+        if event:
+            condition = CONDITIONS.get(event, CONDITIONS["fold"])
+            s = float(secant(lambda s: condition(self.at(s, y)), s, x1=s + self.how.beside, tol=self.how.root))
+        return self.at(s, y)
 
 
 # The curve
@@ -198,7 +141,7 @@ class Curve(States):
     rates : (points, 3) array
         Of approach, load and central gap along the path.
     arclength : (points,) array
-        Along the path, in eps: of approach and root mean square of the gap.
+        Along the path, in eps: of approach and central gap.
     stable : (points,) array of bool
         Stability under fixed grips.
     events : mapping of str to Event
@@ -266,9 +209,10 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settin
 
     The body is meshed by quadrilaterals and clamped far away; scikit-fem assembles the weak form of
     `fem_adhesion.weak_form`, and a sparse factorisation solves it with the approach as a further unknown and the
-    arclength as a further equation. The path is followed on elements of the lowest degree. Its points and events are
-    solved for on higher degrees, until their changes from degree to degree, which are the error estimates, are within
-    `rtol`. It takes 10 s at a Tabor parameter of 0.5, 20 s at 1 and a minute at 2, where `fem_adhesion.trace` takes a
+    contact radius, or the gap on the axis before there is a contact, as a further equation. The path is followed on
+    elements of the lowest degree. Its points and events are solved for on higher degrees, until their changes from
+    degree to degree, which are the error estimates, are within `rtol`; of a point that is the change at its contact
+    radius. It takes 15 s at a Tabor parameter of 0.8 and a minute or two at 2, where `fem_adhesion.trace` takes a
     fraction of a second.
 
     Parameters
@@ -293,15 +237,14 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settin
     began, paths = time.perf_counter(), _paths(scene, rtol, to_load, how)
     path = next(paths)
     points = path.follow(how.separated, to_load)
-    steps = [float(a.row @ (b.state.y - a.state.y)) for a, b in pairwise(points)]
     found, told = path.events(points), dict[str, Event]()
     errors = np.empty((0, 4))
     for path in paths:
-        before, points = points, [path.taken_over(point) for point in points]
+        before, points = points, [path.again(point) for point in points]
         errors = np.array([np.abs(b.observables - a.observables) for a, b in zip(before, points, strict=True)])
         for name, event in found.items():
-            found[name] = path.event_near(path.taken_over(event), condition_of(name))
-            told[name] = _event(name, event, found[name], how.found)
+            found[name] = path.again(event, name)
+            told[name] = _event(name, event, path.again(event), found[name], how.found)
         tolerance = Tolerance.on(told, rtol)
         sizes = rtol * np.array([tolerance.approach, max(abs(point.state.load) for point in points)])
         rough = any(event.contact_radius_error > rtol * event.contact_radius for event in told.values())
@@ -317,7 +260,7 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settin
         scene.tabor,
         rtol,
         np.array([point.rates for point in points]),
-        np.append(0.0, np.cumsum(steps)),
+        np.append(0.0, np.cumsum(np.hypot(np.diff(approach), np.diff(central_gap)))),
         np.array([point.stable for point in points]),
         told,
         path.contact.body.stiffness.shape[0],
@@ -341,20 +284,18 @@ def _paths(scene: Scene, rtol: float, to_load: float, how: Settings) -> Iterator
     beyond = growing(fine[1], far, how.growth)
     mesh = box(np.append(fine, swept + how.growth * beyond), beyond)
     for degree in how.degrees:
-        yield Path(Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), mu, endless=False), swept)
+        yield Path(Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), mu), how)
 
 
-def _event(name: str, coarse: Point, fine: Point, found: float) -> Event:
-    """Numbers of an event with errors, from those on coarser elements.
+def _event(name: str, coarse: Point, there: Point, fine: Point, found: float) -> Event:
+    """Numbers of an event with errors, from those on coarser elements, and of the state there on the finer ones.
 
-    Each errs by its change. As two numbers may agree by chance while the event moves, approach and load where
-    the path turns err no less than by what the event's shift along the path makes of them, which the central gap tells.
+    Each errs by its change. As two numbers may agree by chance while the event moves along the path, where that turns
+    they err no less than by what its move makes of them.
     """
-    changes = np.abs(fine.observables - coarse.observables)
-    if name != "zero_load":
-        shift = changes[2] / abs(fine.rates[2])
-        changes[:2] = np.maximum(changes[:2], np.abs(fine.rates[:2]) * shift)
-    return Event(name, *map(float, fine.observables), *map(float, changes + found))
+    others = (coarse,) if name == "zero_load" else (coarse, there)
+    errors = np.max([np.abs(fine.observables - other.observables) for other in others], axis=0) + found
+    return Event(name, *map(float, fine.observables), *map(float, errors))
 
 
 def require_served(scene: Scene, rtol: float, to_load: float) -> None:

@@ -11,10 +11,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import BarycentricInterpolator, CubicSpline
 from scipy.optimize import newton as secant
 
-from fem_adhesion.weak_form.body import Array, last
+from fem_adhesion.weak_form.body import Array, Body, last
 from fem_adhesion.weak_form.contact import Contact
 from fem_adhesion.weak_form.settings import USUAL, Settings
 from halfspace.errors import NotConverged
@@ -90,7 +90,7 @@ class Equilibrium(Valued):
     @property
     def contact_radius(self) -> float:
         """Largest radius in beta at which the tension is largest; nan if there is none."""
-        radii = even(self.contact.body.radii, self.y[:-1] - self.contact.law.edge).roots(extrapolate=False)
+        radii = even(self.contact.body, self.y[:-1] - self.contact.law.edge).roots(extrapolate=False)
         return float(radii[-1]) if radii.size and radii[-1] > 0 else float("nan")
 
     @property
@@ -118,18 +118,26 @@ class Equilibrium(Valued):
 
 
 INNERMOST = 20  # points, those of about two cells
+NEAREST = 6  # points of an interpolation, about those of a cell
 
 
-def even(radii: Array, values: Array) -> CubicSpline:
-    """Spline through values at radii, and at these on the other side of the axis."""
-    order = np.argsort(radii)
-    r, f = radii[order], values[order]
+def even(body: Body, values: Array) -> CubicSpline:
+    """Spline through values at the points that yield, and at these on the other side of the axis."""
+    order = np.flatnonzero(body.yields)[np.argsort(body.radii[body.yields])]
+    r, f = body.radii[order], values[order]
     return CubicSpline(np.concatenate([-r[::-1], r]), np.concatenate([f[::-1], f]))
 
 
 def on_axis(contact: Contact, values: Array) -> float:
     """Value on the axis of a smooth field at the points."""
-    return float(even(contact.body.radii, values)(0.0))
+    return float(even(contact.body, values)(0.0))
+
+
+def gap_at(radii: Array, r: float) -> Array:
+    """Row (q,) that gives the value at a radius of an even field at the points, by those nearest to it."""
+    near, row = np.argsort(np.abs(radii - r))[:NEAREST], np.zeros(radii.size)
+    row[near] = BarycentricInterpolator(radii[near] ** 2, np.eye(NEAREST))(r**2)
+    return row
 
 
 def along(row: Array, value: float) -> Condition:

@@ -15,25 +15,20 @@ class Settings:
         Cells of the box of a half-space about a contact edge at radius 1: equal ones next to the edge, ratio of one of
         the others to that before, how far they go inwards, and the longest inside the reach of the attraction, as a
         part of that.
-    most, most_along
-        Newton steps after which there is no equilibrium, likewise steps in approach; and those after which a step along
-        the path is halved.
+    most
+        Newton steps after which there is no equilibrium, and steps in approach from afar.
     near
         Relative change of the gaps that a further Newton step would make where its steps end.
     closing, opening
-        Largest parts of a gap that one Newton step may close, and by which a step of approach or along the path may
-        change one: on the axis, lest it pass by two folds.
+        Largest parts of a gap that one Newton step may close, and by which a step of approach may change one.
     aside, turned_at, farthest, tries
         Of the secant to a turning point: first step in 1 + the size of its coordinate at a blunt edge, part of that
         within which the point is found, farthest place of it in such steps, and most steps.
-    first, shortest, most_points
-        First step along the path, in eps of arclength; step and number of points at which it ends without a curve.
-    turn
-        Least cosine between the tangents at both ends of a step.
-    suits
-        Part of these limits that the next step is to use.
+    longest, shortest
+        Longest step along the path in the central gap, or in one and the squared contact radius: with 0.3 both folds
+        at a Tabor parameter of 0.72 were passed by, with 0.15 they are found; and the step below which it ends.
     root, beside
-        Part of a step within which an event is found; arclength to the second state from which it is sought again.
+        Place of an event along the path to which it is found, and the second one from which it is sought again.
     degrees
         Of the elements of a curve, until two in a row agree to rtol.
     separated
@@ -51,7 +46,6 @@ class Settings:
     inner: float = 0.7
     within: float = 0.3
     most: int = 20
-    most_along: int = 10
     near: float = 1e-9
     closing: float = 0.75
     opening: float = 0.3
@@ -59,16 +53,13 @@ class Settings:
     turned_at: float = 1e-3
     farthest: float = 500.0
     tries: int = 10
-    first: float = 0.5
+    longest: float = 0.1
     shortest: float = 1e-6
-    most_points: int = 1000
-    turn: float = 0.5
-    suits: float = 0.4
     root: float = 1e-7
     beside: float = 1e-3
     degrees: tuple[int, ...] = (2, 3, 4, 5)
     separated: float = -9.0
-    left_out: float = 0.01
+    left_out: float = 0.001
     found: float = 1e-8
     cells: float = 0.3
 

@@ -61,7 +61,7 @@ def test_a_body_twice_as_large_is_twice_as_stiff(box):
     larger, pressure = box.scaled(2.0), np.exp(-(box.radii**2))
     u = box.displaced(pressure)
     np.testing.assert_allclose(larger.displaced(pressure / 4), u / 2, rtol=0, atol=1e-9 * np.abs(u).max())
-    assert larger.integral(np.ones_like(larger.radii)) == pytest.approx(np.pi * larger.rim**2)
+    assert larger.area[larger.yields].sum() == pytest.approx(np.pi * larger.rim**2)
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,8 @@ def test_an_equilibrium_balances_and_its_load_is_its_slope(in_contact):
     before, after = (in_contact.past(step, under_load=True) for step in (-d, d))
     assert (after.energy - before.energy) / (2 * d) == pytest.approx(in_contact.load, rel=1e-5)
     assert (after.load - before.load) / (2 * d) == pytest.approx(in_contact.stiffness, rel=1e-4)
-    np.testing.assert_allclose((after.y - before.y) / (2 * d), in_contact.rate, rtol=0, atol=1e-4)
+    near = np.append(contact.body.yields, True)  # gaps far away are so large that a step is rounded off
+    np.testing.assert_allclose(((after.y - before.y) / (2 * d))[near], in_contact.rate[near], rtol=0, atol=1e-4)
     assert newton(contact, in_contact.y, at_load(contact, after.load)).approach == pytest.approx(1.0 + d, rel=1e-7)
 
 
