@@ -93,7 +93,12 @@ def words_of(part: Any) -> str:
     """Name of a law or a profile, its numbers and what it tells; R/eps, which a scene tells, left out."""
     own = {field.name: getattr(part, field.name) for field in fields(part)} if is_dataclass(part) else {}
     own = {name: value for name, value in own.items() if name != "radius_ratio" and value != math.inf}
-    numbers = [f"{name} {value.name if isinstance(value, Path) else f'{value:g}'}" for name, value in own.items()]
+    made = [table[name_of(part)] for table in PARTS.values() if name_of(part) in table]
+    units = {name: [unit] for one in made for name, unit in one.parameters.items() if unit in ("beta", "eps")}
+    numbers = [
+        " ".join([name, value.name if isinstance(value, Path) else f"{value:g}", *units.get(name, ())])
+        for name, value in own.items()
+    ]
     return ", ".join([" ".join([name_of(part), *numbers]), *getattr(part, "findings", ())])
 
 

@@ -72,7 +72,7 @@ class Assessment:
     distances: tuple[verdict.Distance, ...]
     regime: str
     cautions: tuple[str, ...]
-    verdict: tuple[str, ...]
+    verdict: str
     seconds: float = field(compare=False)
     sample: ThinSample | None = None
     spreads: Spreads | None = None
@@ -140,7 +140,7 @@ def assess(contact: Contact, progress: Progress = unheard, inputs: Inputs | None
         distances,
         verdict.regime(tabor),
         (*doubts, *verdict.left_out(contact), *filter(None, (reason, why_not, unknown, unspread, *warnings))),
-        tuple(verdict.verdict(finite or half_space, distances, computed=finite is not None, doubts=doubts)),
+        verdict.verdict(finite or half_space, distances, computed=finite is not None, doubts=doubts),
         time.perf_counter() - began,
         sample,
         found,

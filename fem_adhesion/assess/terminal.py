@@ -14,6 +14,7 @@ from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.spread import Spread
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.thin_sample import ThinSample
+from fem_adhesion.assess.verdict import percent
 from fem_adhesion.common import record as common
 from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain
@@ -56,8 +57,7 @@ def report(assessment: Assessment, digits: int = SHOWN) -> RenderableType:
         Text(),
         *_deviations(assessment, digits),
         *_thin_sample(assessment.contact, assessment.sample, digits),
-        *map(Prose, assessment.verdict[:-1]),
-        Text(),
+        *_distances(assessment),
         *_head(assessment),
     )
 
@@ -65,7 +65,7 @@ def report(assessment: Assessment, digits: int = SHOWN) -> RenderableType:
 def _answer(assessment: Assessment) -> Iterator[RenderableType]:
     """Which model to trust, its main numbers, why, and what is left out of account."""
     best = assessment.best
-    yield Prose(assessment.verdict[-1], "bold")
+    yield Prose(assessment.verdict, "bold")
     for name in ANSWER:
         if quantity := best.values.get(name):
             told, spread = engineering(quantity.value, quantity.unit), None
@@ -74,8 +74,12 @@ def _answer(assessment: Assessment) -> Iterator[RenderableType]:
             yield Prose(f"  {WORDS[name]}: {told}")
     if not best.values.keys() & {"jump_on_separation", "jump_off_separation"}:
         yield Prose("  no jumps: the contact follows the apparatus smoothly")
-    half_space = [line for line in assessment.verdict if f": {assessment.half_space.model} off" in line]
-    yield Prose("; ".join([f"why: tabor = {assessment.contact.units.tabor:.4g}, {assessment.regime}", *half_space]))
+    off = [
+        f"the {one.model} is off by up to {percent(one.size)}, in {WORDS[one.worst]}"
+        for one in assessment.distances
+        if one.model == assessment.half_space.model and one.worst
+    ]
+    yield Prose("; ".join([f"why: tabor = {assessment.contact.units.tabor:.4g}, {assessment.regime}", *off]))
     yield from (Prose(f"caution: {line}") for line in assessment.cautions)
     yield Text()
 
@@ -113,7 +117,7 @@ def _spreads(assessment: Assessment) -> Iterator[RenderableType]:
         Column(f"{spreads.model}", [spread_told(row) for row in rows.values()], words=True),
         Column("variance from", [", ".join(parts) for parts in shares], words=True),
     ]
-    yield Fitted(columns, ["what the inputs leave: value +- standard deviation, and what that comes from"])
+    yield Fitted(columns, ["uncertainty by that of the inputs: value +- standard deviation, and what it comes from"])
     if not spreads.drawn:
         yield Prose("To the first order; there is no atlas of this contact whose draws of the inputs could confirm it.")
     elif not all(row.linear for row in rows.values()):
@@ -179,7 +183,8 @@ def _told_as_it_is(assessment: Assessment) -> Iterator[str]:
     """What the model of the contact as it is stands for, if that was solved."""
     contact, finite = assessment.contact, assessment.finite
     if finite and contact.layer:
-        yield f"Thin sample: under a rigid tip, {contact.shape or 'sphere'}; the half-space is a sample without a base."
+        tip = f"tip, {contact.shape}" if contact.shape else "sphere"
+        yield f"Thin sample: under a rigid {tip}; the half-space is a sample without a base."
     elif finite and contact.profile:
         yield f"Given profile: {contact.shape}, on the half-space."
     elif finite:
@@ -257,6 +262,19 @@ def _deviations(assessment: Assessment, digits: int) -> Iterator[RenderableType]
     yield Text()
 
 
+def _distances(assessment: Assessment) -> Iterator[RenderableType]:
+    """Table of how far the other models are from the best one, in which quantity most, and how many they have."""
+    rows, count = assessment.distances, len(assessment.best.values)
+    columns = [
+        Column("model", [row.model for row in rows], words=True),
+        Column("off by\nup to", [percent(row.size) if row.worst else "-" for row in rows]),
+        Column("in", [WORDS[row.worst] if row.worst else "-" for row in rows], words=True),
+        Column("has", [f"{count - len(row.missing)} of {count}" for row in rows]),
+    ]
+    yield Fitted(columns, [f"how far each model is from the {assessment.best.model}"])
+    yield Text()
+
+
 def _thin_sample(contact: Contact, sample: ThinSample | None, digits: int) -> Iterator[RenderableType]:
     """What of it the half-space and the series get wrong without adhesion, and which thickness is enough."""
     if sample and contact.thickness:
@@ -331,7 +349,7 @@ def record(assessment: Assessment) -> dict[str, object]:
         "distances": assessment.distances,
         "definitions": {"contact_radius": contact_radius(assessment)},
         "cautions": assessment.cautions,
-        "verdict": assessment.verdict,
+        "verdict": [assessment.verdict],
         "seconds": assessment.seconds,
     }
     return common.record(units=UNITS) | {name: plain(part) for name, part in found.items()}

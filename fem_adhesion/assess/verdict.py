@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from fem_adhesion.assess.predictions import QUANTITIES, RADII, WORDS, Prediction, Quantity, relative
+from fem_adhesion.assess.predictions import QUANTITIES, RADII, Prediction, Quantity, relative
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.finite_strain.traction import yielded_adhesion
@@ -117,7 +117,7 @@ def left_out(contact: Contact) -> Iterator[str]:
         adhesion = contact.units.work_of_adhesion * (1 + part)
         yield (
             "stretching of the attracted surface is left out: to the first order it raises the work of adhesion by "
-            f"{_percent(part)}, to {adhesion:.4g} J/m^2{_premise(contact)}; give that to include it"
+            f"{percent(part)}, to {adhesion:.4g} J/m^2{_premise(contact)}; give that to include it"
         )
 
 
@@ -137,36 +137,27 @@ def _over(quantity: Quantity | None, R: float) -> float:
     return quantity.value / R if quantity else 0.0
 
 
-def verdict(
-    best: Prediction, distances: Sequence[Distance], *, computed: bool, doubts: Sequence[str] = ()
-) -> Iterator[str]:
-    """Sentences on which model to trust; none as it is where there are doubts, cautions that pass a limit.
+def verdict(best: Prediction, distances: Sequence[Distance], *, computed: bool, doubts: Sequence[str] = ()) -> str:
+    """Which model to trust; none as it is where there are doubts, cautions that pass a limit.
 
     The distances, from `ranked`, are from the best one; `computed` says whether that is of the bodies as they are.
     """
-    for distance in distances:
-        judged = f"{distance.model} has none of its quantities"
-        if distance.worst:
-            judged = f"{distance.model} off by up to {_percent(distance.size)}, in {WORDS[distance.worst]}"
-            judged += f"; has no {', '.join(WORDS[name] for name in distance.missing)}" if distance.missing else ""
-        yield f"beside the {best.model}: {judged}"
     if not computed:
-        yield f"the finite body is not known: judge the {best.model} by the cautions"
-        return
+        return f"the finite body is not known: judge the {best.model} by the cautions"
     whole = [distance for distance in distances if distance.worst and not distance.missing]
     good = [distance.model for distance in whole if distance.size <= USUAL.good]
     trust = f"trust the {best.model}"
     if doubts:
-        meanings = ", ".join(doubt.rpartition(": ")[2] for doubt in doubts)
+        meanings = ", ".join(dict.fromkeys(doubt.rpartition(": ")[2] for doubt in doubts))
         trust = f"trust no model as it is: {meanings}; of these the {best.model} leaves out least"
     if good:
-        yield f"{trust}; within {_percent(USUAL.good)} in every quantity: {', '.join(good)}"
-    elif whole:
-        nearest = f"the {whole[0].model} is nearest, off by up to {_percent(whole[0].size)}"
-        yield f"{trust}; no other model is within {_percent(USUAL.good)} in every quantity, {nearest}"
-    else:
-        yield f"{trust}; no other model has all its quantities"
+        return f"{trust}; within {percent(USUAL.good)} in every quantity: {', '.join(good)}"
+    if whole:
+        nearest = f"the {whole[0].model} is nearest, off by up to {percent(whole[0].size)}"
+        return f"{trust}; no other model is within {percent(USUAL.good)} in every quantity, {nearest}"
+    return f"{trust}; no other model has all its quantities"
 
 
-def _percent(part: float) -> str:
-    return f"{100 * part:.3g} %"
+def percent(part: float) -> str:
+    """A part in per cent, in three digits or whole."""
+    return f"{100 * part:.3g} %" if part < 10 else f"{100 * part:.0f} %"
