@@ -104,7 +104,7 @@ def said(tmp_path_factory):
     return found[0], json.loads((folder / "a.json").read_text()), (folder / "a.svg").read_text()
 
 
-def _text(part, width=80):
+def _text(part, width=120):
     console = Console(width=width, file=io.StringIO())
     console.print(part, crop=False)
     return console.file.getvalue()
