@@ -57,9 +57,6 @@ class Settings:
     least_step: float = 1e-3  # of the input: the solvers err by 1e-6, a derivative then by 1e-3
     straight: float = 0.2  # of the linear spread, by which quantiles may be off to bear it out
     compressed: float = 2.0  # load to which the curves go
-    pressed: float = 0.25  # approach to which a rigid sphere's curve goes; it bears no load at 0.206
-    rounded: float = 1e-3  # root of the contact radius below which Maugis's approach is a sum of rounding errors
-    smallest: float = 1e-4  # of the coordinate along a stretch
 
     # Thin samples
     wrong: float = 0.01  # part of the value by which the half-space may be off to be right

@@ -21,13 +21,11 @@ from halfspace import atlas
 from halfspace.elastic import grid
 from halfspace.elastic.layers import LayeredBody, surface_compliance
 from halfspace.roots import root
-from halfspace.theories import closed_forms, dmt
+from halfspace.theories import closed_forms, curves
 from halfspace.theories.closed_forms import ContactState
 from halfspace.theories.layered import OnLayers
-from halfspace.theories.maugis import MaugisDugdale
 from halfspace.values import Array, Estimate
 
-REACH = 3 * math.pi**2 / (2.5 * 1.4**3.5)  # in the bulge of `jkr_with_reach`, so that the fit of [G97] App. C comes out
 WIDEST = float(closed_forms.jkr_radius(USUAL.compressed))  # contact radius at which every theory is in compression
 
 
@@ -48,48 +46,36 @@ class Loop:
 
 
 def bradley(tabor: float, stiffness: float) -> Array:
-    """Rigid sphere, [G97] (1.3), at any Tabor parameter."""
-    del tabor
-    return _far(USUAL.pressed, 0.0, stiffness, closed_forms.bradley_load)
+    """Rigid sphere, which has no Tabor parameter."""
+    return curves.bradley(_sampling(tabor, stiffness))
 
 
 def dmt_maugis(tabor: float, stiffness: float) -> Array:
-    """Rigid until it touches, then after Hertz with a constant tension, [G97] (4.2b)."""
-    a = np.linspace(0.0, float(closed_forms.hertz_radius(USUAL.compressed + 2 * np.pi)), USUAL.number)
-    alpha = closed_forms.hertz_approach(a, tabor)
-    rigid = _far(0.0, 0.0, stiffness, closed_forms.bradley_load)
-    return _joined(rigid, np.stack([alpha, dmt.maugis_load(alpha, tabor), a]))
+    """Rigid until it touches, then after Hertz with a constant tension."""
+    return curves.dmt_maugis(tabor, _sampling(tabor, stiffness))
 
 
 def jkr(tabor: float, stiffness: float) -> Array:
     """JKR: no attraction before contact."""
-    return _joined(_far(0.0, tabor, stiffness), _jkr_contact(tabor))
+    return curves.jkr(tabor, _sampling(tabor, stiffness))
 
 
 def jkr_with_reach(tabor: float, stiffness: float) -> Array:
-    """JKR in contact; before it the far attraction and the bulge that it raises. Fit for large Tabor parameters.
-
-    With y = h0/eps the gap at the pole, B mu^(3/2) y^(-5/2) is the bulge, as in `halfspace.theories.criteria`, and
-
-        alpha* = 1 - y - B mu^(3/2) y^(-5/2),    W = -(8 pi/3) y^-2.
-
-    B makes the jump under fixed grips that of [G97]'s fit, (|alpha*| + 1)^(7/2) = 3 pi^2 mu^(3/2).
-    """
-    return _joined(_attracted(tabor, stiffness), _jkr_contact(tabor))
+    """JKR in contact, and before it the far attraction."""
+    return curves.jkr_with_reach(tabor, _sampling(tabor, stiffness))
 
 
 def maugis_dugdale(tabor: float, stiffness: float) -> Array:
     """Maugis-Dugdale with the largest tension of the Lennard-Jones law."""
-    theory = MaugisDugdale.matched(tabor)
-    c = theory.touching_radius * np.linspace(0.0, 1.0, USUAL.number)
-    disc = _apart(theory.separated_approach(c), theory.separated_load(c))
-    a = WIDEST * np.linspace(USUAL.rounded, 1.0, USUAL.number) ** 2
-    contact = np.stack([theory.approach(a), theory.load(a), a])
-    return _joined(_far(float(disc[0, 0]), tabor, stiffness), disc, contact)
+    return curves.maugis_dugdale(tabor, _sampling(tabor, stiffness))
+
+
+def _sampling(tabor: float, stiffness: float) -> curves.Sampling:
+    return curves.Sampling(_beyond(tabor, stiffness), WIDEST, USUAL.number)
 
 
 def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Array:
-    """JKR on a layered body, and before contact the far attraction as in `jkr_with_reach`.
+    """JKR on a layered body, and before contact the far attraction as in `halfspace.theories.curves.attracted`.
 
     The contact is smooth in the root of its radius, by which it is interpolated. The attraction falls with the radius u
     as (1 + u^2/s^2)^-3, s^2 = 2 y/mu, whose waves k have the amplitude (k s)^2 K_2(k s) dk: the bulge is a half-space's
@@ -97,7 +83,7 @@ def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Array:
     """
     theory = OnLayers(body)
     what = "the widest contact; take a half-space"
-    widest = root(lambda a: theory.jkr(a).load - USUAL.compressed, USUAL.smallest, WIDEST, what)
+    widest = root(lambda a: theory.jkr(a).load - USUAL.compressed, curves.SMALLEST, WIDEST, what)
     nodes = chebpts1(USUAL.nodes)
     states = [theory.jkr(widest * float(1 + x) ** 2 / 4) for x in nodes]
     through = chebfit(nodes, np.array([[state.approach, state.load] for state in states]), USUAL.nodes - 1)
@@ -110,8 +96,8 @@ def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Array:
     weights = weights * waves**2 * kv(2, waves)
     yields = surface_compliance(body, np.outer(np.exp(-widths), waves).ravel()).reshape(widths.size, -1) @ weights
     raised = CubicSpline(widths, yields / weights.sum())
-    apart = _attracted(tabor, stiffness, lambda y: raised(np.log(2 * y / tabor) / 2))
-    return _joined(apart, np.stack([tabor * approach, load, widest * s**2]))
+    apart = curves.attracted(tabor, _sampling(tabor, stiffness), lambda y: raised(np.log(2 * y / tabor) / 2))
+    return curves.joined(apart, np.stack([tabor * approach, load, widest * s**2]))
 
 
 def far_end(curve: atlas.Curve) -> tuple[float, float]:
@@ -135,7 +121,7 @@ def half_space(tabor: float, stiffness: float, number: int = USUAL.sampled) -> A
     def sampled(places: Array) -> Array:
         """Samples at places on the curve, which are negative farther away: -1 a decade."""
         near, s = curve.states(places=places[places >= 0]), s0 * 10.0 ** -places[places < 0]
-        far = _apart(1 - s, -8 * np.pi / 3 * s**-2 * (1 + bulge * (s / s0) ** -3.5))
+        far = curves.apart(1 - s, -8 * np.pi / 3 * s**-2 * (1 + bulge * (s / s0) ** -3.5))
         return np.concatenate([far, np.stack([near.approach, near.load, near.contact_radius])], axis=1)
 
     places = np.concatenate([np.linspace(-decades, 0, number, endpoint=False), np.linspace(0, last, number)])
@@ -151,40 +137,9 @@ def half_space(tabor: float, stiffness: float, number: int = USUAL.sampled) -> A
     return found
 
 
-def _jkr_contact(tabor: float) -> Array:
-    """Contact branch from a point contact on."""
-    a = WIDEST * np.linspace(0.0, 1.0, USUAL.number) ** 2
-    return np.stack([closed_forms.jkr_approach(a, tabor), closed_forms.jkr_load(a), a])
-
-
-def _attracted(tabor: float, stiffness: float, raised: Callable[[Array], Array] = np.ones_like) -> Array:
-    """Stretch from afar to past its fold: attraction and the bulge, of a half-space times what gaps in eps make it."""
-    y = np.geomspace(_beyond(tabor, stiffness), 1.0, USUAL.number)
-    approach = 1 - y - REACH * tabor**1.5 * raised(y) * y**-2.5
-    kept = y > 0.5 * y[np.argmax(approach)]
-    return _apart(approach[kept], -8 * np.pi / 3 * y[kept] ** -2)
-
-
-def _far(last: float, tabor: float, stiffness: float, load: Callable[[Array], Array] = np.zeros_like) -> Array:
-    """Stretch from afar up to an approach, the closer the nearer to it; without attraction unless a load is given."""
-    approach = last - np.geomspace(_beyond(tabor, stiffness), USUAL.smallest, USUAL.number)
-    approach[-1] = last
-    return _apart(approach, load(approach))
-
-
 def _beyond(tabor: float, stiffness: float) -> float:
     """Gap wider than any at which a jump off lands, which is (|W|/k - alpha*) at most."""
     return 10 + 4 * tabor + 10 / stiffness
-
-
-def _apart(approach: Array, load: Array) -> Array:
-    """Stretch without contact."""
-    return np.stack([approach, load, np.full_like(load, np.nan)])
-
-
-def _joined(first: Array, *others: Array) -> Array:
-    """Curve of stretches, each of which begins with the last sample of the one before, or across a leap from it."""
-    return np.concatenate([first, *(stretch[:, 1:] for stretch in others)], axis=1)
 
 
 # What is read off

@@ -15,17 +15,13 @@ import numpy as np
 from halfspace import atlas
 from halfspace.atlas.series import LEAST, MOST
 from halfspace.scaling import Units, contact_modulus, equivalent_radius
-from halfspace.theories import closed_forms, dmt
-from halfspace.theories.maugis import MaugisDugdale
+from halfspace.theories import curves
 from halfspace.values import Array
 
 COUNT = 801  # places on a curve of the atlas; linear between them, the load is within 1e-3 R dgamma
 BEYOND = 160  # places on each of its two continuations
 EVEN = np.linspace(0.0, 1.0, BEYOND)
 FARTHEST = 1e5  # approach in (1 + tabor) eps to which the attraction is continued
-BULGE = 3 * np.pi**2 / (2.5 * 1.4**3.5)
-"""B, by which the jump under fixed grips is at that of [G97]'s fit, (abs(alpha*) + 1)^(7/2) = 3 pi^2 tabor^(3/2)."""
-
 STIFFEST = 1e-4  # Tabor parameter up to which a sphere is rigid
 SOFTEST = 1e4  # Tabor parameter from which on curves are JKR's but for a hundredth of tabor eps
 WIDEST = 25.0  # contact radius in beta to which the compression is continued: a load of 2e4 R dgamma
@@ -39,14 +35,12 @@ def by_atlas(units: Units) -> Array:
 
     Both meet the atlas's end, the latter with its slope: 5 R dgamma and more, where Maugis's theory and it are apart
     by 0.1 tabor eps at most up to 100 R dgamma. Beyond the atlas's Tabor parameters the contact is JKR's, and before
-    it the far attraction raises a bulge, alpha* = 1 - y - B tabor^(3/2) y^(-5/2) at a gap of y eps. Below them the
-    sphere is rigid, and the atlas' least Tabor parameter serves: it yields by 0.01 eps under a load of R dgamma.
+    it the far attraction raises a bulge. Below them the sphere is rigid, and the atlas' least Tabor parameter serves:
+    it yields by 0.01 eps under a load of R dgamma.
     """
     tabor = max(units.tabor, LEAST)
     if tabor > MOST:
-        bulge = BULGE * tabor**1.5
-        y = np.geomspace(FARTHEST * (1 + tabor), 0.5 * (2.5 * bulge) ** (2 / 7), 4 * BEYOND)
-        return np.hstack([[1 - y - bulge * y**-2.5, -8 * np.pi / 3 * y**-2], by_jkr(units)[:, 2 * BEYOND + 1 :]])
+        return curves.jkr_with_reach(tabor, _sampling(tabor))[:2]
     curve = atlas.table(tabor, COUNT)
     (first, pull), (last, push) = curve[:, 0], curve[:, -1]
     h = (1 - first) * (FARTHEST * (1 + tabor) / (1 - first)) ** EVEN[:0:-1]
@@ -60,32 +54,21 @@ def by_atlas(units: Units) -> Array:
 
 def by_jkr(units: Units) -> Array:
     """JKR's curve: no attraction before contact, so that eps is but the unit of the approach."""
-    tabor, a = units.tabor, WIDEST * np.linspace(0.0, 1.0, 2 * COUNT) ** 2
-    return np.hstack(
-        [_apart(tabor, 0.0, np.zeros_like), [closed_forms.jkr_approach(a, tabor), closed_forms.jkr_load(a)]]
-    )
+    return curves.jkr(units.tabor, _sampling(units.tabor))[:2]
 
 
 def by_dmt(units: Units) -> Array:
     """A rigid sphere until it touches, then Hertz's contact under a constant tension (DMT-M)."""
-    tabor = units.tabor
-    alpha = tabor * (WIDEST * np.linspace(0.0, 1.0, 2 * COUNT)[1:] ** 2) ** 2
-    return np.hstack([_apart(tabor, 0.0, closed_forms.bradley_load), [alpha, dmt.maugis_load(alpha, tabor)]])
+    return curves.dmt_maugis(units.tabor, _sampling(units.tabor))[:2]
 
 
 def by_maugis(units: Units) -> Array:
     """Maugis's curve with the largest tension of the 3-9 law."""
-    tabor, theory = units.tabor, MaugisDugdale.matched(units.tabor)
-    c = theory.touching_radius * np.linspace(0.0, 1.0, BEYOND)
-    disc = theory.separated_approach(c), theory.separated_load(c)
-    a = WIDEST * np.linspace(1e-3, 1.0, COUNT) ** 2
-    return np.hstack([_apart(tabor, float(disc[0][0]), np.zeros_like), disc, [theory.approach(a), theory.load(a)]])
+    return curves.maugis_dugdale(units.tabor, _sampling(units.tabor))[:2]
 
 
-def _apart(tabor: float, last: float, load: Callable[[Array], Array]) -> Array:
-    """Separation up to an approach."""
-    alpha = last - np.append(np.geomspace(FARTHEST * (1 + tabor), 1e-4, 2 * BEYOND), 0.0)
-    return np.array([alpha, load(alpha)])
+def _sampling(tabor: float) -> curves.Sampling:
+    return curves.Sampling(FARTHEST * (1 + tabor), WIDEST, COUNT)
 
 
 THEORIES: Mapping[str, Theory] = {"atlas": by_atlas, "maugis-dugdale": by_maugis, "jkr": by_jkr, "dmt": by_dmt}

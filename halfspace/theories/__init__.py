@@ -1,14 +1,15 @@
 """What is known without solving the contact problem.
 
 `closed_forms` (Hertz, Bradley, JKR), `dmt`, `maugis` (Dugdale's law), `exact_sphere` (a sphere's profile in the place
-of a paraboloid's), `layered` (Hertz, JKR and a published series on thin samples), `criteria` (for jumping on),
-`fits` (closed expressions fitted to the atlas: pull-off, contact radius, jumps, energy lost).
+of a paraboloid's), `curves` (Bradley, DMT, JKR, Maugis as samples), `layered` (Hertz, JKR and a published series on
+thin samples), `criteria` (for jumping on), `fits` (closed expressions fitted to the atlas: pull-off, contact radius,
+jumps, energy lost).
 """
 
 from importlib import import_module
 from typing import Any
 
-__all__ = ["closed_forms", "criteria", "dmt", "exact_sphere", "fits", "layered", "maugis"]
+__all__ = ["closed_forms", "criteria", "curves", "dmt", "exact_sphere", "fits", "layered", "maugis"]
 
 
 def __getattr__(name: str) -> Any:
