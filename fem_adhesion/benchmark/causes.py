@@ -93,10 +93,12 @@ def _open(name: str) -> bool:
 def _boxed(shape: float, problem: Problem, size: float) -> Prediction:
     """A box of the size L = 1/size yields otherwise than a half-space, by shape mu W/L, and attracts no farther.
 
-    The tension beyond L sums up to the law's energy at the gap there; the surface is taken as undeformed so far out.
+    The tension beyond L sums up to the law's energy at the gap there; the surface is taken as undeformed so far out,
+    and never nearer than in equilibrium.
     """
     tabor, (approach, load, *others) = problem.scene.tabor, problem.curve
-    lacking = -2 * math.pi / tabor * problem.scene.law.energy(tabor / size**2 / 2 - approach, tabor)
+    gap = np.maximum(tabor / size**2 / 2 - approach, 0.0)
+    lacking = -2 * math.pi / tabor * problem.scene.law.energy(gap, tabor)
     tilted = approach - shape * size * tabor * load
     before, yielding, both = (
         {
