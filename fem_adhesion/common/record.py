@@ -16,6 +16,7 @@ stands for a blank: ``load_R_dgamma``, ``load_error_R_dgamma``, ``load_error_N``
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -24,6 +25,7 @@ from typing import Any, TextIO
 from fem_adhesion.common.facts import plain, versions
 from fem_adhesion.common.options import COMMAND
 from fem_adhesion.registry import record_of
+from halfspace.errors import InputError
 
 SCHEMA = 3
 
@@ -64,6 +66,21 @@ def beside(table: Path) -> Path:
 def write_beside(file: TextIO, table: str, head: Mapping[str, Any]) -> None:
     """Write the record of a table, to the file that stands beside it."""
     json.dump({"@context": "http://www.w3.org/ns/csvw", "url": table, **head}, file, indent=1, allow_nan=False)
+
+
+def lines_of(table: Path, remedy: str = "run its command again") -> list[list[str]]:
+    """Lines of a CSV file, the names of its columns first; InputError if it is none, empty, or its lines differ."""
+    try:
+        with table.open(newline="", encoding="utf-8-sig") as stream:
+            lines = list(csv.reader(stream))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{table} cannot be read as CSV: {getattr(error, 'strerror', error)}; {remedy}") from error
+    if not lines or not lines[0]:
+        raise InputError(f"{table} is empty; {remedy}")
+    for number, line in enumerate(lines, start=1):
+        if len(line) != len(lines[0]):
+            raise InputError(f"{table}, line {number}: {len(line)} cells, not {len(lines[0])}; {remedy}")
+    return lines
 
 
 def read(path: Path) -> Mapping[str, Any]:

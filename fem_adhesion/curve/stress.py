@@ -15,7 +15,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from fem_adhesion.common.numbers import parse
-from fem_adhesion.common.record import column
+from fem_adhesion.common.record import column, lines_of
 from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.elasticity.reference import reference_functions
@@ -126,24 +126,19 @@ def places_of(where: str, units: Units | None) -> str | Points:
     """
     if where in LINES:
         return where
-    path = Path(where)
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = list(csv.DictReader(file))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"stress = {path} cannot be read, limit: axis, surface or a CSV file; give one") from error
-    found = []
+    path, found = Path(where), []
+    columns, *rows = lines_of(path, "give axis, surface or a CSV file of points")
     for quantity in ("r", "depth"):
-        name = next((name for name in (rows[0] if rows else ()) if name and name.startswith(f"{quantity}_")), None)
-        if name is None:
+        name = next((name for name in columns if name.startswith(f"{quantity}_")), None)
+        if name is None or not rows:
             raise InputError(f"{path} has no column {quantity} with rows; write the header as r_nm,depth_nm or in beta")
         unit = name.partition("_")[2]
         if unit != "beta" and units is None:
             raise InputError(f"{path}: {name} with --tabor, limit: beta; write {quantity}_beta, or give the material")
         size = 1.0 if units is None or unit == "beta" else parse(f"1{unit}", quantity) / units.length
         try:
-            found.append(size * np.array([float(row[name]) for row in rows]))
-        except (TypeError, ValueError) as error:
+            found.append(size * np.array([float(row[columns.index(name)]) for row in rows]))
+        except ValueError as error:
             raise InputError(f"{path}: {name} has a row that is no number; mend it or leave it out") from error
     radii, depths = found
     return radii, depths

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections import Counter
@@ -281,30 +280,15 @@ def _svg(file: Path) -> bytes:
 
 def _column(file: Path, name: str) -> list[str]:
     """Column of a CSV file, InputError if there is none of that name."""
-    columns, *rows = _lines(file)
+    columns, *rows = record.lines_of(file)
     if name not in columns:
         raise InputError(f"{file} has the columns {', '.join(columns)}, but not {name}; run its command again")
     return [row[columns.index(name)] for row in rows]
 
 
-def _lines(file: Path) -> list[list[str]]:
-    """Lines of a CSV file, of its columns' names first; InputError if it is empty or not all have as many cells."""
-    try:
-        with file.open(newline="", encoding="utf-8") as stream:
-            lines = list(csv.reader(stream))
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{file} is no CSV file: {error}; run its command again") from error
-    if not lines or not lines[0]:
-        raise InputError(f"{file} is empty; run its command again")
-    for number, line in enumerate(lines, start=1):
-        if len(line) != len(lines[0]):
-            raise InputError(f"{file}, line {number}: {len(line)} cells, not {len(lines[0])}; run its command again")
-    return lines
-
-
 def read_table(file: Path, title: str) -> Table:
     """Contents of a CSV file, InputError if it holds none; the title says so where rows are left out."""
-    columns, *rows = _lines(file)
+    columns, *rows = record.lines_of(file)
     left_out = f" (first {MOST_ROWS} of {len(rows)} lines; all are in {file.name})" if len(rows) > MOST_ROWS else ""
     shown = [[cell(text) for text in row] for row in rows[:MOST_ROWS]]
     return Table("", title + left_out, "", [name.replace("_", " ") for name in columns], shown)

@@ -5,7 +5,6 @@ A figure for each quantity has half-space and finite elements side by side, on l
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
@@ -19,6 +18,7 @@ from matplotlib.ticker import NullFormatter
 from fem_adhesion.common import style
 from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.page import Columns, Item, Table, markdown, said, write_csv
+from fem_adhesion.common.record import lines_of
 from fem_adhesion.common.style import Picture, captions, draw
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
 from fem_adhesion.speed.study import (
@@ -262,13 +262,13 @@ def _growths(study: SpeedStudy) -> Table:
 
 def read_earlier(path: Path, tabor: float) -> Earlier:
     """Read ``speed.csv`` of an earlier run at the same Tabor parameter, or raise InputError."""
+    columns, *lines = lines_of(path, "give speed.csv")
+    rows = [dict(zip(columns, line, strict=True)) for line in lines]
     try:
-        with path.open(newline="") as file:
-            rows = list(csv.DictReader(file))
         at = {float(row["tabor"]) for row in rows}
         rungs = [_rung(row) for row in rows if row["outcome"] == "converged"]
-    except (OSError, KeyError, TypeError, ValueError, csv.Error) as error:
-        why = error.strerror if isinstance(error, OSError) else f"{type(error).__name__} {error}"
+    except (KeyError, ValueError) as error:
+        why = f"{type(error).__name__} {error}"
         raise InputError(said("speed", "earlier", "unread", path=path, why=why)) from None
     if not rungs or at != {tabor}:
         known = ", ".join(f"{t:g}" for t in sorted(at))

@@ -145,7 +145,7 @@ def test_the_stations_of_a_walk_balance(contents):
         ("--speed", "captions.csv", b"figure,words\na,b\n", "has the columns figure, words, but not caption; "),
         ("--hard", "hard.csv", b"name,ended\na,b\n", "has the columns name, ended, but not outcome; "),
         ("--hard", "hard.csv", b"name,outcome\na\n", "line 2: 1 cells, not 2; "),
-        ("--hard", "hard.csv", b"name,outcome\n\xff,b\n", "is no CSV file: "),
+        ("--hard", "hard.csv", b"name,outcome\n\xff,b\n", "cannot be read as CSV: "),
     ],
 )
 def test_a_table_of_other_columns_is_refused_before_any_work(option, name, content, words, tmp_path, capsys):

@@ -321,7 +321,7 @@ def test_what_is_no_earlier_run_is_refused(distinct, written, change, told):
     file = written(distinct)
     with pytest.raises(InputError, match="at tabor 1, limit: some at 2"):
         read_earlier(file, 2.0)
-    with pytest.raises(InputError, match="cannot be read as the table of a speed study: No such file"):
+    with pytest.raises(InputError, match="cannot be read as CSV: No such file"):
         read_earlier(file.with_name("other.csv"), 1.0)
     file.write_text(file.read_text().replace(*change))
     with pytest.raises(InputError, match=told):
