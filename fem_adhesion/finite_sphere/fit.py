@@ -39,10 +39,6 @@ def _power(exponent: float) -> Term:
     return lambda mu, rho: np.asarray((mu / rho) ** (exponent / 2))
 
 
-def _square_of(term: Term) -> Term:
-    return lambda mu, rho: term(mu, rho) ** 2
-
-
 ALL: Mapping[str, Term] = {
     "beta/R": _power(1),
     "(beta/R)^2": _power(2),
@@ -50,12 +46,11 @@ ALL: Mapping[str, Term] = {
     "(beta/R)^4": _power(4),
     "(beta/R)^5": _power(5),
     "eps/R": lambda mu, rho: 1 / rho,  # noqa: ARG005 - every term is a function of both
+    "(eps/R)^2": lambda mu, rho: 1 / rho**2,  # noqa: ARG005
     "beta/R ln(beta/R)": lambda mu, rho: np.sqrt(mu / rho) * np.log(mu / rho) / 2,
 }
 TERMS = ("beta/R", "(beta/R)^2", "eps/R")
 
-OF_THE_SHAPE = ("profile", "traction")  # causes that are of the shape of the undeformed surface alone
-YIELDING = ("body", "all")  # causes that let the body yield as a whole
 FIXED_GRIPS = ("jump_on_approach", "jump_on_load", "jump_off_approach", "jump_off_load", "hysteresis")
 """Quantities that the body's yield changes to first order."""
 
@@ -63,11 +58,11 @@ FIXED_GRIPS = ("jump_on_approach", "jump_on_load", "jump_off_approach", "jump_of
 def leading_terms(cause: str, quantity: str, *, one_tabor: bool = False) -> Mapping[str, Term]:
     """Terms of a deviation; among points of one Tabor parameter (beta/R)^2 and eps/R are one term."""
     names: tuple[str, ...]
-    if cause in OF_THE_SHAPE:
+    if cause in ("profile", "traction"):  # of the shape of the undeformed surface alone
         names = ("(beta/R)^2", "(beta/R)^4") if one_tabor else ("(beta/R)^2", "eps/R")
     elif quantity in FIXED_GRIPS:
         names = TERMS[:2] if one_tabor else TERMS
-        names += ("beta/R ln(beta/R)",) if cause in YIELDING else ()
+        names += ("beta/R ln(beta/R)",) if cause in ("body", "all") else ()  # the body yields as a whole
     elif cause == "grip":
         names = ("(beta/R)^3", "(beta/R)^5")
     else:
@@ -116,12 +111,11 @@ def compare(rows: Sequence[DeviationRow]) -> Iterator[tuple[str, float, float, E
         raise InputError(
             "0 deviations of the pull-off by the profile, limit 4; solve for some at small tabor/radius_ratio"
         )
-    for theory, name, expected, tabor in (
-        ("rigid sphere: eps/R", "eps/R", RIGID_PULL_OFF, float(data.tabor.min())),
-        ("Maugis (1995): (beta/R)^2", "(beta/R)^2", SOFT_PULL_OFF, float(data.tabor.max())),
+    for theory, name, square, expected, tabor in (
+        ("rigid sphere: eps/R", "eps/R", "(eps/R)^2", RIGID_PULL_OFF, float(data.tabor.min())),
+        ("Maugis (1995): (beta/R)^2", "(beta/R)^2", "(beta/R)^4", SOFT_PULL_OFF, float(data.tabor.max())),
     ):
-        leading = ALL[name]
-        terms = {"leading": leading, "square": _square_of(leading)}
+        terms = {"leading": ALL[name], "square": ALL[square]}
         found = fit(data.where(data.tabor == tabor), terms, tolerance=TOLERANCE / 10)
         yield theory, expected, tabor, found.coefficients["leading"]
 
