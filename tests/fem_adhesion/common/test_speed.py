@@ -91,7 +91,7 @@ FAILED = Timing("some", "", "failed", 0.1, "on purpose")
 def test_the_quick_run_ends_well_and_its_files_are_there(run, page, rows):
     assert run.code == 0, run.err
     assert {file.name for file in (run / "speed").iterdir()} == FILES
-    assert run.out == page
+    assert run.out == f"{page}written: speed/ ({len(FILES)} files)\n"
     assert "FAILED" not in page
     rungs = [(method.name, step.setting) for method in METHODS for step in method.steps[: method.quick]]
     assert [(row["method"], row["setting"]) for row in rows] == rungs
