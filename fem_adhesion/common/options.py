@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from fem_adhesion.common.files import STANDARD, all_written_aside
@@ -29,7 +30,13 @@ COMMAND: ContextVar[str] = ContextVar("command", default="")
 
 
 class Help(argparse.HelpFormatter):
-    """Shows defaults, where there are any."""
+    """Shows defaults, where there are any, and breaks lines between words alone."""
+
+    def _split_lines(self, text: str, width: int) -> list[str]:
+        return wrap(" ".join(text.split()), width, break_long_words=False, break_on_hyphens=False)
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return "\n".join(f"{indent}{line}" for line in self._split_lines(text, width - len(indent)))
 
     def _get_help_string(self, action: argparse.Action) -> str | None:
         text, default = action.help, action.default

@@ -76,9 +76,10 @@ def add_body(body: Group) -> None:
     body.add_argument("--counter", help=counter, metavar="BODY")
     body.add_argument("--share", type=float, help="with --counter: its part of the compliance, 0 to 1", metavar="PART")
     body.add_argument("--strain", choices=tuple(MATERIALS), help="linear or neo-Hookean; small unless given")
-    counted = "what the surface law is counted per; projected unless given, at finite strain with matter conserved"
     tractions = ("projected", "surface", "reference", "normal", "vertical")
-    body.add_argument("--traction", choices=tractions, help=counted)
+    counted = f"area that the surface law is counted per: {', '.join(tractions)}; projected unless given, at finite "
+    counted += "strain with matter conserved"
+    body.add_argument("--traction", choices=tractions, help=counted, metavar="AREA")
 
 
 def add_profile(group: Group, unless: str, known: tuple[str, ...] = ()) -> None:

@@ -52,7 +52,7 @@ def part_in(
 def usage(kind: str, name: str, own: Mapping[str, str] | None = None) -> str:
     """How the word of a part is written."""
     if name == "layers":
-        return "layers:thickness,poisson,modulus/.../bonded|sliding|substrate:modulus,poisson"
+        return "layers:thickness,poisson,modulus/.../BASE, BASE being bonded|sliding|substrate:modulus,poisson"
     taken = PARTS[kind][name].parameters if own is None and name in PARTS[kind] else own or {}
     words = [unit.replace(" or ", "|") if " or " in unit else each for each, unit in taken.items()]
     return f"{name}:{','.join(words)}".rstrip(":")

@@ -237,7 +237,10 @@ def test_compare_rejects_another_body(asked, wrong):
         (["layer"], "body = layer, limit: layer:thickness,bonded|sliding; give thickness, beta"),
         (["coated:2"], "limit: coated:thickness,modulus_ratio,substrate_poisson; give modulus_ratio"),
         (["coated:2,1e3"], "modulus_ratio = 1000 is outside 0.001 <="),
-        (["layers"], "limit: layers:thickness,poisson,modulus/.../bonded|sliding|substrate:modulus,poisson; give a"),
+        (
+            ["layers"],
+            "limit: layers:thickness,poisson,modulus/.../BASE, BASE being bonded|sliding|substrate:modulus,poisson;",
+        ),
         (["layers:1,0.3,1,2"], "strata = stratum:1,0.3,1,2, limit: stratum:thickness,poisson,modulus; leave out 2"),
         (["layers:1,0.3,2"], "modulus = 2 of the first stratum does not serve"),
         (["layers:1,0.4", "--poisson", "0.3"], "poisson = 0.3 with strata, limit: that of the"),
