@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -29,43 +30,41 @@ SMEARED = 10  # samples over which a jump is seen at most: amplifiers smear thos
 
 
 @dataclass(frozen=True)
-class Jump:
-    """A jump of the force while the base stands still.
+class Far:
+    """The part of a segment that is far from the sample: the line and the wave through it, and where it ends.
+
+    Light from the sample interferes with that from the cantilever: a wave, whose phase follows their distance, so that
+    it stands still in contact.
 
     Attributes
     ----------
-    last, first : int
-        Index of the last sample before and of the first after it; those between belong to no branch.
-    travel : float
-        Place of the base or tip in m, in the middle between the two.
-    size : float
-        Change of the force in N, positive.
+    line : Polynomial
+        Force in N of the travel in m, of degree 2 where the noise does not hide a curvature.
+    wave : tuple of float
+        Coefficients of its sine and cosine in N.
+    period : float
+        Of the wave in m, 0 without one.
+    end : int
+        First sample beyond.
+    edge : float
+        Travel at which the force leaves the line.
     """
 
-    last: int
-    first: int
-    travel: float
-    size: float
-
-
-@dataclass(frozen=True)
-class Baseline:
-    """Force without contact: offset + slope s + curvature s^2 + a wave, s the travel from the contact.
-
-    Attributes
-    ----------
-    offset, slope, curvature : float
-        In N, N/m and N/m^2; the curvature is zero where the noise hides it.
-    amplitude, period : float
-        Of the wave in N and m, zero if there is none: light from the sample interferes with that from the cantilever.
-        Its phase follows their distance, so that it stands still in contact.
-    """
-
-    offset: float
-    slope: float
-    curvature: float
-    amplitude: float
+    line: Polynomial
+    wave: tuple[float, float]
     period: float
+    end: int
+    edge: float
+
+    @property
+    def amplitude(self) -> float:
+        """Of the wave in N."""
+        return math.hypot(*self.wave)
+
+    def at(self, travel: Array) -> Array:
+        """Force without contact in N at travels in m."""
+        phase = 2 * np.pi * np.minimum(travel, self.edge) / (self.period or 1.0)
+        return np.asarray(self.line(travel) + self.wave[0] * np.sin(phase) + self.wave[1] * np.cos(phase))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,7 +75,7 @@ class Prepared(Valued):
     ----------
     curve : ForceCurve
         As measured.
-    baseline : mapping of str to Baseline
+    baseline : mapping of str to Far
         That of "approach" and that of "retract": the detector drifts between the two.
     background : (n,) array
         Both baselines in N at the samples.
@@ -86,20 +85,21 @@ class Prepared(Valued):
         Of a sample of the noise with the next.
     contact : float
         Travel in m at which the force of the approach, below its baseline, last rises through it.
-    jump_on, jump_off : Jump or None
-        None where no jump stands out of the noise.
+    jump_on, jump_off : slice or None
+        From the last sample before a jump of the force to the first after it; those between belong to no branch, as the
+        base stands still. None where no jump stands out of the noise.
     pull_off : float
         Depth of the least force of the retract below the baseline in N, positive.
     """
 
     curve: ForceCurve
-    baseline: Mapping[str, Baseline]
+    baseline: Mapping[str, Far]
     background: Array
     noise: float
     correlation: float
     contact: float
-    jump_on: Jump | None
-    jump_off: Jump | None
+    jump_on: slice | None
+    jump_off: slice | None
     pull_off: float
 
     @property
@@ -132,7 +132,7 @@ def prepare(curve: ForceCurve) -> Prepared:
     _require_unsaturated(curve.force, above, noise)
     contact = _contact(curve.travel[curve.approach], above[curve.approach])
     on = slice(far["approach"].end - SMEARED, curve.approach.stop)
-    jump_on = _jump(curve.travel, -above, on, steps)
+    jump_on = _jump(-above, on, steps)
     if jump_on is None and above[curve.approach].max() < BEYOND * noise:
         raise InputError(_no_contact("approach", above[curve.approach], BEYOND * noise))
     for name, way in ways.items():
@@ -141,13 +141,13 @@ def prepare(curve: ForceCurve) -> Prepared:
     off = slice(max(deepest - SMEARED, curve.retract.start), above.size - far["retract"].end + SMEARED)
     return Prepared(
         curve,
-        {name: found.baseline(contact) for name, found in far.items()},
+        far,
         background,
         noise,
         max(0.0, 1 - (steps / noise) ** 2 / 2) if noise else 0.0,
         contact,
         jump_on,
-        _jump(curve.travel, above, off, steps),
+        _jump(above, off, steps),
         -float(above[curve.retract].min()),
     )
 
@@ -174,34 +174,6 @@ def _steadied(curve: ForceCurve) -> ForceCurve:
         f"The travel scatters by {engineering(scatter, 'm')}, which the force does not follow: it was smoothed in time."
     )
     return replace(curve, travel=smooth, told=(*curve.told, why))
-
-
-@dataclass(frozen=True)
-class Far:
-    """The part of a segment that is far from the sample: the line and the wave through it, and where it ends.
-
-    `wave` has the coefficients of sine and cosine in N and the period in m, `end` is a sample, `edge` the travel at
-    which the force leaves the line.
-    """
-
-    line: Polynomial
-    wave: tuple[float, float, float]
-    end: int
-    edge: float
-
-    def at(self, travel: Array) -> Array:
-        """Force without contact in N at travels in m."""
-        sine, cosine, period = self.wave
-        phase = 2 * np.pi * np.minimum(travel, self.edge) / period
-        return np.asarray(self.line(travel) + sine * np.sin(phase) + cosine * np.cos(phase))
-
-    def baseline(self, contact: float) -> Baseline:
-        """Numbers of the baseline at a contact."""
-        slope = self.line.deriv()
-        sine, cosine, period = self.wave
-        amplitude = float(np.hypot(sine, cosine))
-        numbers = float(self.line(contact)), float(slope(contact)), float(slope.deriv()(contact)) / 2 + 0.0
-        return Baseline(*numbers, amplitude, period if amplitude else 0.0)
 
 
 def _far(name: str, travel: Array, force: Array) -> Far:
@@ -269,11 +241,12 @@ def _line(travel: Array, force: Array) -> tuple[Polynomial, float]:
     return (bent, float(np.std(curved))) if _demanded(straight, curved, 1) else (line, float(np.std(straight)))
 
 
-def _waved(travel: Array, force: Array, line: Polynomial) -> tuple[Polynomial, tuple[float, float, float]]:
+def _waved(travel: Array, force: Array, line: Polynomial) -> tuple[Polynomial, tuple[float, float], float]:
     """Line with a wave where the data demand one and show it one and a half times; else the line as it was."""
     span = float(np.ptp(travel))
-    best, found = force - line(travel), (line, (0.0, 0.0, PERIODS[0]))
-    before = best
+    plain = line, (0.0, 0.0), 0.0
+    before = best = force - line(travel)
+    found = plain
     for period in [each for each in PERIODS if 1.5 * each < span]:
         phase = 2 * np.pi * travel / period
         columns = np.column_stack([np.ones_like(travel), (travel - travel[0]) / span, np.sin(phase), np.cos(phase)])
@@ -281,8 +254,8 @@ def _waved(travel: Array, force: Array, line: Polynomial) -> tuple[Polynomial, t
         rest = force - columns @ [offset, slope, sine, cosine]
         if np.sum(rest**2) < np.sum(best**2):
             straight = Polynomial([offset - slope * travel[0] / span, slope / span])
-            best, found = rest, (straight, (float(sine), float(cosine), period))
-    return found if _demanded(before, best, 3) else (line, (0.0, 0.0, PERIODS[0]))
+            best, found = rest, (straight, (float(sine), float(cosine)), period)
+    return found if _demanded(before, best, 3) else plain
 
 
 def _demanded(before: Array, after: Array, parameters: int) -> bool:
@@ -321,7 +294,7 @@ def _contact(travel: Array, above: Array) -> float:
     return float(np.interp(0.0, above[pair], travel[pair]))
 
 
-def _jump(travel: Array, force: Array, where: slice, steps: float) -> Jump | None:
+def _jump(force: Array, where: slice, steps: float) -> slice | None:
     """Jump about the steepest rise of the force in a part of the curve, if it stands out of the noise of steps."""
     rises = np.diff(force[where])
     if not rises.size:  # the force was least where the baseline begins already
@@ -333,6 +306,4 @@ def _jump(travel: Array, force: Array, where: slice, steps: float) -> Jump | Non
     before, after = np.flatnonzero(~jumps[:steepest]), np.flatnonzero(~jumps[steepest:])
     last = where.start + (int(before[-1]) + 1 if before.size else 0)
     first = where.start + steepest + (int(after[0]) if after.size else jumps.size - steepest)
-    if first - last > SMEARED:
-        return None
-    return Jump(last, first, float(travel[last] + travel[first]) / 2, float(force[first] - force[last]))
+    return slice(last, first) if first - last <= SMEARED else None

@@ -245,16 +245,16 @@ def data_of(prepared: Prepared, stiffness: float) -> Data:
             runs.append(Run(segment, "both", samples))
             continue
         order = ("contact", "separated") if segment else ("separated", "contact")
-        parts = slice(samples.start, jump.last + 1), slice(jump.first, samples.stop)
+        parts = slice(samples.start, jump.start + 1), slice(jump.stop, samples.stop)
         runs += [Run(segment, branch, part) for branch, part in zip(order, parts, strict=True)]
-        ends = travel[[jump.last, jump.first]]
+        ends = travel[[jump.start, jump.stop]]
         step = float(np.median(np.abs(np.diff(travel[parts[0]]))))
         places.append(Place(name, float(ends.mean()), max(step, abs(float(np.diff(ends)[0]))) / math.sqrt(12)))
     noise = max(prepared.noise, 1e-6 * prepared.pull_off)  # a curve without noise is one of a millionth
-    degree = 2 if any(line.curvature for line in prepared.baseline.values()) else 1
+    degree = max(far.line.degree() for far in prepared.baseline.values())
     steady = np.diff(curve.travel[curve.approach], 2)  # of a steady travel these are its errors' alone
     jitter = float(np.median(np.abs(steady))) / MEDIAN / math.sqrt(6)
-    periods = tuple(line.period if line.amplitude else 0.0 for line in prepared.baseline.values())
+    periods = tuple(far.period for far in prepared.baseline.values())
     forms = degree, jitter, periods, prepared.contact
     return Data(travel, curve.force, tuple(runs), tuple(places), noise, prepared.correlation, *forms)
 

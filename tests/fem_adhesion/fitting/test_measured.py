@@ -113,16 +113,16 @@ def test_preparing_finds_what_was_put_in(plain):
     step, spacing = np.diff(TRAVEL)[0], UNITS.spacing
     zero = atlas.zero_load(UNITS.tabor).approach
     assert found.contact == pytest.approx(zero * spacing, abs=step)
-    assert found.jump_on.travel == pytest.approx(ranges["separated"][1] * spacing, abs=2 * step)
-    assert found.jump_off.travel == pytest.approx(ranges["contact"][0] * spacing, abs=2 * step)
+    for jump, turn in ((found.jump_on, ranges["separated"][1]), (found.jump_off, ranges["contact"][0])):
+        assert np.mean(TRAVEL[[jump.start, jump.stop]]) == pytest.approx(turn * spacing, abs=2 * step)
     assert found.noise == pytest.approx(NOISE, rel=0.2)
     assert found.correlation == pytest.approx(CORRELATION, abs=0.1)
     assert found.pull_off == pytest.approx(-atlas.pull_off(UNITS.tabor).load * FORCE, abs=STIFFNESS * step)
     for name, factor in (("approach", 1.0), ("retract", 1.1)):
-        baseline = found.baseline[name]
-        assert baseline.offset == pytest.approx(factor * OFFSET + SLOPE * found.contact, abs=3 * NOISE)
-        assert baseline.slope == pytest.approx(SLOPE, rel=0.05)
-        assert baseline.curvature == 0
+        line = found.baseline[name].line
+        assert line(found.contact) == pytest.approx(factor * OFFSET + SLOPE * found.contact, abs=3 * NOISE)
+        assert line.deriv()(found.contact) == pytest.approx(SLOPE, rel=0.05)
+        assert line.degree() == 1
 
 
 def test_the_wave_of_interfering_light_is_no_noise(written):
@@ -131,7 +131,7 @@ def test_the_wave_of_interfering_light_is_no_noise(written):
     wave = amplitude * np.sin(2 * np.pi * np.minimum(travel, jump) / period + 1.0)
     flat, found = (prepare(read(written(piezo_m=travel, force_N=force))) for force in (loaded, loaded + wave))
     assert found.noise == pytest.approx(NOISE, rel=0.2)
-    assert found.jump_on.last == flat.jump_on.last
+    assert found.jump_on.start == flat.jump_on.start
     for baseline in found.baseline.values():
         assert baseline.amplitude == pytest.approx(amplitude, rel=0.05)
         assert baseline.period == pytest.approx(period, rel=0.02)
