@@ -17,13 +17,14 @@ from typing import IO, Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter, MaxNLocator
 from rich.console import Group
 
 from fem_adhesion.common import style
 from fem_adhesion.common.facts import code_digest, plain
 from fem_adhesion.common.files import Plain, Store
 from fem_adhesion.common.jobs import Kept, solve_all
-from fem_adhesion.common.numbers import PREFIXES, counted, exponent_of
+from fem_adhesion.common.numbers import counted
 from fem_adhesion.common.record import column
 from fem_adhesion.common.terminal import Column, Fitted, Prose
 from fem_adhesion.fitting import makers, terminal
@@ -209,20 +210,17 @@ def draw(rows: Sequence[Row]) -> Figure:
             axes.set_axis_off()
             continue
         numbers = np.array([each.value for each in given])
-        exponent = exponent_of(float(np.median(np.abs(numbers))))
-        scaled, reach = numbers * 10.0**-exponent, float(np.ptp(numbers) or abs(numbers[0]))
-        ends = [
-            (
-                each.value - reach if each.low is None else each.low,
-                each.value + reach if each.high is None else each.high,
-            )
-            for each in given
-        ]
-        widths = np.clip(np.abs(np.array(ends).T - numbers), 0, 0 if name in FORCES else reach) * 10.0**-exponent
-        tops, *_ = axes.hist(scaled, bins="auto", color=style.SKY, edgecolor="white", label="curves")
+        highest = float(numbers.max() + np.ptp(numbers))  # where an open end is drawn to
+        lows = [0.0 if each.low is None and name not in FORCES else each.low or each.value for each in given]
+        highs = [highest if each.high is None and name not in FORCES else each.high or each.value for each in given]
+        widths = np.abs(np.clip([lows, highs], 0, max(highest, numbers.max() * 1.1)) - numbers)
+        tops, *_ = axes.hist(numbers, bins="auto", color=style.SKY, edgecolor="white", label="curves")
         heights = float(np.max(tops)) * np.linspace(1.1, 1.7, len(given))
-        axes.errorbar(scaled, heights, xerr=widths, fmt=".", color=style.BLUE, linewidth=0.8, label="intervals at 95 %")
-        named = f"{name.replace('_', ' ')}, {PREFIXES[exponent]}{given[0].unit}"
-        style.dress(axes, named, "curves", legend=None)
+        bars = {"fmt": ".", "color": style.BLUE, "linewidth": 0.8, "label": "intervals at 95 %"}
+        axes.errorbar(numbers, heights, xerr=widths, **bars)
+        style.dress(axes, name.replace("_", " "), "curves", legend=None)
+        axes.xaxis.set_major_formatter(EngFormatter(given[0].unit))
+        axes.xaxis.set_major_locator(MaxNLocator(3))
+        axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     style.legend_below(figure, panels, 2)
     return figure

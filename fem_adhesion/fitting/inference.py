@@ -9,7 +9,7 @@ and the first after a jump are left out: the spring flies there.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -327,6 +327,14 @@ class Best:
     def scale(self) -> float:
         """Chi square per degree of freedom, or 1 if that is less: intervals grow by its root, as a misfit demands."""
         return max(1.0, self.chi2 / self.degrees)
+
+    def residuals(self) -> Iterator[tuple[Run, Array]]:
+        """Whitened residuals of the samples, run after run."""
+        rest = self.problem.residuals(self.x)
+        for run in self.problem.data.runs:
+            count = self.problem.data.travel[run.samples].size
+            yield run, rest[:count]
+            rest = rest[count:]
 
     @cached_property
     def covariance(self) -> Array:

@@ -362,14 +362,10 @@ def _candidates(found: Mapping[str, Profile]) -> tuple[Candidate, ...]:
 
 def _branches(best: Best) -> tuple[Branch, ...]:
     """Mean square of the residuals and their runs of one sign (Wald & Wolfowitz), branch by branch."""
-    data, residuals, made = best.problem.data, best.problem.residuals(best.x), list[Branch]()
-    for run in data.runs:
-        count = data.travel[run.samples].size
-        own, residuals = residuals[:count], residuals[count:]
-        made.append(
-            Branch(("approach", "retract")[run.segment], run.branch, count, float(np.mean(own**2)), _chance(own))
-        )
-    return tuple(made)
+    return tuple(
+        Branch(("approach", "retract")[run.segment], run.branch, own.size, float(np.mean(own**2)), _chance(own))
+        for run, own in best.residuals()
+    )
 
 
 def _chance(residuals: Array) -> float:
