@@ -159,6 +159,17 @@ def test_a_figure_of_an_earlier_study_does_not_stay(tmp_path):
     assert (tmp_path / "notes.txt").exists()
 
 
+@pytest.mark.usefixtures("made_up")
+def test_cases_may_be_kept_elsewhere(tmp_path, capsys):
+    line = [*ONE, "--out", str(tmp_path / "out"), "--resume", str(tmp_path / "kept")]
+    assert cli.main(line) == 0
+    assert [file.name for file in (tmp_path / "kept").iterdir()] == ["cases"]
+    assert not (tmp_path / "out/cases").exists()
+    assert cli.main(line) == 2
+    assert f"{tmp_path / 'out'} holds" in capsys.readouterr().err
+    assert cli.main([*line, "--force"]) == 0
+
+
 @pytest.fixture
 def interruptible():
     """What a shell without job control starts in the background ignores SIGINT, and so would the study."""
