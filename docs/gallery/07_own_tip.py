@@ -1,10 +1,16 @@
-"""
+r"""
 Your own tip
 ============
 
 You have measured the profile of your tip: radius and height, in one unit, as two columns of a CSV file. The table
 is read as a smooth surface of revolution. The radius of curvature at its apex is found from the table, and R/ε says
 how large it is.
+
+Of a contact in SI, the command says what the tip does, and how far a paraboloid is from it, with the table in the unit
+that its header says, ``r_nm,z_nm``::
+
+    fem-adhesion assess --radius 100nm --modulus 72GPa --poisson 0.17 \
+        --work-of-adhesion 0.063J/m^2 --spacing 0.2nm --profile tabulated:tip.csv
 
 Here the table is that of a tip that steepens faster than a sphere; a sphere of the same radius at the apex stands
 beside it.

@@ -42,15 +42,10 @@ class Settings:
     # Closed theories as samples
     number: int = 100_001  # of each stretch; odd, so that every second sample has the same ends
     nodes: int = 48  # of the polynomial through JKR's theory on layers
-    widths: int = 100  # of the attracted surface, for which a bulge on layers is found
-    waves: float = 40.0  # waves a width: e^-40 is left
-    wave_points: int = 200  # waves
     sampled: int = 8001  # places on the atlas' curve; energies err by 2e-7
     zooms: int = 3  # times that intervals beside a turn of the base are divided
     zoomed: int = 33  # places on such an interval
-    slack: float = (
-        10.0  # errors of the atlas' curve by which its turns may be off, in eps, and energies, in R dgamma eps
-    )
+    slack: float = 10.0  # errors of the atlas' curve by which its turns may be off, in eps, and energies
     draws: int = 256  # of the inputs: quantiles at 16 and 84 % to 5 % of the spread
     drawn: int = 401  # places on the atlas' curve for each draw
     step: float = 0.25  # of a standard deviation, by which an input is changed for a derivative
