@@ -94,7 +94,8 @@ class Region(Valued):
 class Front(Valued):
     """Unknowns `done` (c,) that are eliminated together, by their stiffness K_cc, and K_ck with those left, (k,).
 
-    They are found again by `recovery` (c, c + k): K_cc^-1 on the forces on them, -K_cc^-1 K_ck on those left.
+    They are found again by `recovery` (c, c + k): K_cc^-1 on the forces on them, -K_cc^-1 K_ck on those left. Or those
+    of many cells at once, (cells, c) and (cells, k), of each the unknowns that no other one shares.
     """
 
     done: Index
@@ -118,21 +119,11 @@ class Front(Valued):
 
     def carry(self, forces: Array) -> None:
         """Carry the forces on its unknowns over to those left, in place."""
-        forces[self.left] += forces[self.done] @ self.carried
+        np.add.at(forces, self.left, (forces[self.done][..., None, :] @ self.carried)[..., 0, :])
 
     def recover(self, u: Array) -> None:
         """Turn the forces on its unknowns into their displacements, in place, where those left are known."""
         u[self.done] = (self.recovery @ u[self.both][..., None])[..., 0]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Interiors(Front):
-    """The same of many cells at once, (cells, c) and (cells, k): of each the unknowns that no other one shares."""
-
-    def carry(self, forces: Array) -> None:
-        """Carry the forces on its unknowns over to those left, in place."""
-        carried = forces[self.done][:, None] @ self.carried
-        forces += np.bincount(self.left.ravel() % forces.size, carried.ravel(), forces.size)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -188,10 +179,10 @@ def eliminated_by(K: Array, done: Index, left: Index) -> tuple[Front, Array]:
 
     Or those of each of many cells, K (cells, n, n).
     """
-    count, kind = done.shape[-1], Interiors if done.ndim > 1 else Front
+    count = done.shape[-1]
     inverse = inverses(K[..., :count, :count])
     recovery = np.concatenate([inverse, -inverse @ K[..., :count, count:]], axis=-1)
-    front = kind(done, left, recovery)
+    front = Front(done, left, recovery)
     return front, K[..., count:, count:] + K[..., count:, :count] @ front.carried
 
 
