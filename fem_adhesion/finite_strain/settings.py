@@ -27,10 +27,6 @@ class Settings:
         Fine cells in one mesh of the curve: more cost unknowns, fewer cost meshes.
     flattened
         c dgamma/(E* R) above which a sphere is drawn flat: 0.127 bears a load at tabor 0.5 to 1, 0.169 does not.
-    slow
-        Part of the error that a step of the iteration by an old tangent may leave; else a new tangent is made.
-    solved
-        Accuracy of the linear equations where none is asked for.
     start_steps, start_accuracy, start_slow
         Most steps to a state under a given pressure, the accuracy of this state, and the ratio of two steps from
         which the tangent is made anew.
@@ -47,8 +43,6 @@ class Settings:
     smallest_part: float = 0.005
     window: int = 8
     flattened: float = 0.13
-    slow: float = 0.1
-    solved: float = 1e-10
     start_steps: int = 12
     start_accuracy: float = 1e-4
     start_slow: float = 0.5
