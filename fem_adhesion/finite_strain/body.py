@@ -172,31 +172,20 @@ class Body(Valued):
         return np.concatenate([self.cells.displacements, self.space.unknowns + self.pressures], axis=1)
 
     def deformation(self, u: Array) -> Deformation:
-        """Deformation at the points under all unknowns; of the last few states it is known."""
-        for known, state in self._recent:
-            if np.array_equal(known, u):
-                return state
-        self._recent.insert(0, (u.copy(), Deformation(self.cells.gradient(u), self.stretch)))
-        del self._recent[3:]  # the last, its trial, and the one before
-        return self._recent[0][1]
-
-    def forget(self) -> None:
-        """Free the memory of the last few states."""
-        self._recent.clear()
-
-    @cached_property
-    def _recent(self) -> list[tuple[Array, Deformation]]:
-        return []
+        """Deformation at the points under all unknowns."""
+        return Deformation(self.cells.gradient(u), self.stretch)
 
     def forces(self, u: Array) -> Array:
         """Forces on the displacements, in R dgamma, and what is left of p = lambda ln J in each pressure, (N + M,)."""
-        lam, G = self._lame
-        forces = self.cells.works(stress(self.deformation(u), G, self._pressure(u)))
-        return np.append(forces, self.log_volumes(u) - self.products @ u[self.space.unknowns :] / lam)
+        (lam, G), state = self._lame, self.deformation(u)
+        forces = self.cells.works(stress(state, G, self._pressure(state, u)))
+        volumes = self._of_pressures(state.log_volume)
+        return np.append(forces, volumes - self.products @ u[self.space.unknowns :] / lam)
 
     def tangent_product(self, u: Array) -> Callable[[Array], Array]:
         """Derivative of the forces along any change of the unknowns."""
-        (lam, _), D, f, N = self._lame, self._moduli(u), self.deformation(u).inverse_transpose, self.space.unknowns
+        (lam, _), state, N = self._lame, self.deformation(u), self.space.unknowns
+        D, f = self._moduli(state, u), state.inverse_transpose
 
         def product(v: Array) -> Array:
             A = self.cells.gradient(v)
@@ -208,26 +197,24 @@ class Body(Valued):
 
     def cell_tangents(self, u: Array) -> Array:
         """The same, symmetric, cell by cell, (cells, k, k): with pressures each a saddle point."""
-        K, values = self.cells.stiffness(self._moduli(u)), self.pressure_functions
+        state, values = self.deformation(u), self.pressure_functions
+        K = self.cells.stiffness(self._moduli(state, u))
         if not self._mixed:
             return K
-        beside = self.cells.densities(self.deformation(u).inverse_transpose * self.cells.measure) @ values.T
+        beside = self.cells.densities(state.inverse_transpose * self.cells.measure) @ values.T
         own = (self.cells.measure[:, None] * values) @ values.T / -self._lame[0]
         return np.block([[K, beside], [beside.transpose(0, 2, 1), own]])
 
     def energy(self, u: Array) -> float:
         """Elastic energy in R dgamma mu eps."""
-        (lam, G), state, p = self._lame, self.deformation(u), self._pressure(u)
+        (lam, G), state = self._lame, self.deformation(u)
+        p = self._pressure(state, u)
         volumetric = p * state.log_volume - p**2 / (2 * lam) if self._mixed else p * state.log_volume / 2
         return float(np.sum(self.cells.measure * (shear_energy(state, G) + volumetric)))
 
     def least_volume_ratio(self, u: Array) -> float:
         """Least J at any quadrature point; the body is turned inside out where it is not positive."""
         return 1 + self.stretch * float(self.deformation(u).dilatation.min())
-
-    def log_volumes(self, u: Array) -> Array:
-        """Integral of ln(J)/delta with each pressure function, (M,)."""
-        return self._of_pressures(self.deformation(u).log_volume)
 
     @property
     def _mixed(self) -> bool:
@@ -237,16 +224,16 @@ class Body(Valued):
     def _lame(self) -> tuple[float, float]:
         return lame_parameters(self.poisson)
 
-    def _pressure(self, u: Array) -> Array:
+    def _pressure(self, state: Deformation, u: Array) -> Array:
         """Pressure at the points."""
         if self._mixed:
             return self._at_points(u[self.space.unknowns :])
-        return self._lame[0] * self.deformation(u).log_volume
+        return self._lame[0] * state.log_volume
 
-    def _moduli(self, u: Array) -> Array:
+    def _moduli(self, state: Deformation, u: Array) -> Array:
         """Derivative of the stress by grad u, at fixed pressure unknowns, (5, 5, cells, q)."""
-        (lam, G), state = self._lame, self.deformation(u)
-        D, f = moduli(state, G, self._pressure(u)), state.inverse_transpose
+        lam, G = self._lame
+        D, f = moduli(state, G, self._pressure(state, u)), state.inverse_transpose
         return D if self._mixed else D + lam * f[:, None] * f
 
     def _at_points(self, p: Array) -> Array:

@@ -143,7 +143,6 @@ class HeldBody(Valued):
         for name in ("undeformed", "_dissection"):
             self.__dict__.pop(name, None)
         self._made.clear()
-        self.body.forget()
 
     def _exact(self, tangent: Tangent, y: Array) -> bool:
         return not self.body.stretch or np.array_equal(tangent.y, y)
