@@ -54,7 +54,6 @@ class CurvedMapping(MappingIsoparametric):  # type: ignore[misc]
         super().__init__(mesh, mesh.elem())
         self.points = points
         self.degree = round(np.sqrt(points.shape[2])) - 1
-        self._latest = (np.empty(0), np.empty(0))  # points of facets and their reference places
 
     def Fmap(self, i: int, X: Array, tind: Any = None) -> Array:
         """Coordinate i of points of the cells."""
@@ -68,17 +67,6 @@ class CurvedMapping(MappingIsoparametric):  # type: ignore[misc]
     def _sum(self, i: int, shapes: Array, tind: Any) -> Array:
         points = self.points[i] if tind is None else self.points[i][tind]
         return np.asarray(points @ shapes if shapes.ndim == 2 else np.einsum("cn,ncq->cq", points, shapes))
-
-    def G(self, X: Array, find: Any = None) -> Array:
-        """Points of facets."""
-        Y, cells = self._on_cell(X, find)
-        self._latest = self.F(Y, cells), Y
-        return self._latest[0]
-
-    def invF(self, x: Array, tind: Any = None, **options: Any) -> Array:
-        """Reference places of points; those of facets are known, and need not be found to the last digit again."""
-        points, places = self._latest
-        return places if x is points else np.asarray(super().invF(x, tind, **options))
 
     def bndmap(self, i: int, X: Array, find: Any = None) -> Array:
         """Coordinate i of points of facets, which run from their first vertex to their second."""
