@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, replace
+from dataclasses import asdict, fields, replace
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -317,7 +317,7 @@ def enough_table(sample: ThinSample, digits: int) -> Fitted:
     return Fitted(columns, [f"from which thickness on the half-space is right to {100 * USUAL.wrong:g} %"])
 
 
-UNITS = {name: unit for name, (unit, _) in KINDS.items()} | {
+UNITS = {name: KINDS[name][0] for name in (*(part.name for part in fields(Contact)), "hamaker") if name in KINDS} | {
     "equivalent_radius": "m",
     "contact_modulus": "Pa",
     "thickness_in_beta": "beta",

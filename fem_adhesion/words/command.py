@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from importlib.resources import files
+from textwrap import indent
 
 from fem_adhesion.common.options import AGREE, Command, Parser
 from halfspace.errors import InputError
@@ -16,9 +17,9 @@ def add_options(command: Parser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the entries that have a word in their heads."""
-    from rich.padding import Padding
+    from rich.text import Text
 
-    from fem_adhesion.common.terminal import Prose, make_console
+    from fem_adhesion.common.terminal import Prose, broken, make_console
 
     words = files("fem_adhesion.words").joinpath("data/glossary.md").read_text(encoding="utf-8").replace("\\", "")
     console, asked, found = make_console(), " ".join(options.word).casefold(), False
@@ -26,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
         head, _, text = entry.partition("\n: ")
         if text and asked in head.casefold():
             found = True
-            console.print(Prose(head, "bold"), Padding(Prose(" ".join(text.split())), (0, 0, 0, 4), expand=False))
+            console.print(Prose(head, "bold"), Text(indent(broken(" ".join(text.split()), console.width - 4), " " * 4)))
         elif not text and not asked:
             console.print(f"\n{entry.removeprefix('### ')}", style="underline")
     if not found:
