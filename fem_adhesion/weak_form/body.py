@@ -23,7 +23,7 @@ from skfem import (
     MeshTri,
 )
 
-from fem_adhesion.weak_form.settings import USUAL, Settings
+from fem_adhesion.weak_form.settings import USUAL
 from halfspace.values import Valued
 
 Array = NDArray[np.float64]
@@ -246,7 +246,6 @@ def half_space(
     poisson: float,
     tip: float = np.inf,
     reach: float = 1.0,
-    how: Settings = USUAL,
 ) -> Body:
     """Box of a half-space as wide and deep as its size, whose cells grow from `finest` at radius 1 of the surface on.
 
@@ -255,11 +254,13 @@ def half_space(
     It stands on a spring that yields as what is beyond would: Hertz's pressure sqrt(1 - r^2), of the load 2 pi/3, does
     the work 4 pi^2/15 on a half-space, and what it falls short of that on the box is done on the spring.
     """
-    steps = growing(finest, size, how.growth, how.even)
-    inner = 1 - steps[steps < how.inner][::-1]
-    core = inner[0] * how.growth ** -np.arange(1.0, np.ceil(np.log(max(inner[0] / tip, 1.0)) / np.log(how.growth)) + 1)
-    r = fine_within(reach, np.concatenate([[0.0], core[::-1], inner, [1.0], 1 + steps]), how.within)
-    mesh = box(r, growing(min(finest, tip), size, how.growth))
+    steps = growing(finest, size, USUAL.growth, USUAL.even)
+    inner = 1 - steps[steps < USUAL.inner][::-1]
+    core = inner[0] * USUAL.growth ** -np.arange(
+        1.0, np.ceil(np.log(max(inner[0] / tip, 1.0)) / np.log(USUAL.growth)) + 1
+    )
+    r = fine_within(reach, np.concatenate([[0.0], core[::-1], inner, [1.0], 1 + steps]))
+    mesh = box(r, growing(min(finest, tip), size, USUAL.growth))
     body = discretise(mesh, degree, [(poisson, 1.0)], plate=True)
     body = on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
     return to_infinity(body)
@@ -278,8 +279,8 @@ def growing(finest: float, size: float, growth: float, even: int = 1) -> Array:
     return np.asarray(np.cumsum(finest * growth ** np.maximum(np.arange(count) - even + 1, 0)))
 
 
-def fine_within(reach: float, lines: Array, part: float = USUAL.within) -> Array:
+def fine_within(reach: float, lines: Array) -> Array:
     """Ends of cells, cut into equal parts where they are longer than a part of a distance within it."""
-    counts = np.where(lines[:-1] < reach, np.ceil(np.diff(lines) / (part * reach)), 1).astype(int)
+    counts = np.where(lines[:-1] < reach, np.ceil(np.diff(lines) / (USUAL.within * reach)), 1).astype(int)
     cells = zip(lines[:-1], lines[1:], counts, strict=True)
     return np.append(np.concatenate([np.linspace(a, b, n, endpoint=False) for a, b, n in cells]), lines[-1])

@@ -16,7 +16,7 @@ from scipy.optimize import newton as secant
 
 from fem_adhesion.weak_form.body import Array, Body, last
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.settings import USUAL, Settings
+from fem_adhesion.weak_form.settings import USUAL
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
 
@@ -155,60 +155,58 @@ def at_load(contact: Contact, load: float) -> Condition:
     return lambda y: (load - contact.load(y), contact.load_row(y))
 
 
-def newton(
-    contact: Contact, y: Array, condition: Condition, most: int = USUAL.most, how: Settings = USUAL
-) -> Equilibrium:
+def newton(contact: Contact, y: Array, condition: Condition) -> Equilibrium:
     """Equilibrium with one more condition, from a state nearby; NotConverged if there is none."""
-    for _ in range(most):
+    for _ in range(USUAL.most):
         state = Equilibrium(contact, y)
         change = np.append(contact.left_by(state.u, state.approach) - y[:-1], 0.0)
         missing, row = condition(y)
         change = change + (missing - float(row @ change)) / float(row @ state.rate) * state.rate
         size = contact.law.size(y[:-1])
         # Lest the surfaces pass through each other.
-        y = y + min(1.0, how.closing / max(float((-change[:-1] / size).max()), how.closing)) * change
+        y = y + min(1.0, USUAL.closing / max(float((-change[:-1] / size).max()), USUAL.closing)) * change
         moved = float(np.abs(change[:-1] / size).max())
-        if moved**2 < how.near:
+        if moved**2 < USUAL.near:
             return Equilibrium(contact, y)
         if not np.isfinite(moved):
             break
-    raise NotConverged(f"no equilibrium in {most} Newton steps of the weak form; try a nearer start")
+    raise NotConverged(f"no equilibrium in {USUAL.most} Newton steps of the weak form; try a nearer start")
 
 
-def from_afar(contact: Contact, far: float, approach: float, how: Settings = USUAL) -> Equilibrium:
+def from_afar(contact: Contact, far: float, approach: float) -> Equilibrium:
     """Equilibrium at an approach that is reached from undeformed surfaces at one far apart, by steps in approach.
 
     In each the gaps change by less than a part of them; NotConverged if that leads nowhere, as past a fold.
     """
     start = contact.undeformed(far)
     state = newton(contact, start, at_approach(start))
-    for _ in range(how.most):
+    for _ in range(USUAL.most):
         if (left := approach - state.approach) == 0:
             return state
         fastest = float(np.max(np.abs(left * state.rate[:-1]) / contact.law.size(state.y[:-1])))
-        start = state.y + how.opening / max(how.opening, fastest) * left * state.rate
-        start[-1] = approach if fastest <= how.opening else start[-1]
+        start = state.y + USUAL.opening / max(USUAL.opening, fastest) * left * state.rate
+        start[-1] = approach if fastest <= USUAL.opening else start[-1]
         state = newton(contact, start, at_approach(start))
-    raise NotConverged(f"no way from afar to alpha = {approach:.4g} eps in {how.most} steps of the weak form")
+    raise NotConverged(f"no way from afar to alpha = {approach:.4g} eps in {USUAL.most} steps of the weak form")
 
 
 # Turning points
 
 
-def turning_point(middle: Equilibrium, *, under_load: bool, how: Settings = USUAL) -> Equilibrium | None:
+def turning_point(middle: Equilibrium, *, under_load: bool) -> Equilibrium | None:
     """Where the equilibria near one turn, or None where they do not.
 
     At the fold of a jump d(alpha)/dW vanishes along the load; at the load's own extremum dW/d(alpha) does along the
     approach. The root is found by the secant.
     """
-    first = how.aside * (1 + abs(middle.approach if under_load else middle.load))
+    first = USUAL.aside * (1 + abs(middle.approach if under_load else middle.load))
     first *= min(1.0, 9 / middle.contact.sharpness**2)
 
     def slope(step: float) -> float:
         stiffness = middle.past(step, under_load=under_load).stiffness
         return stiffness if under_load else 1 / stiffness
 
-    tol, tries = how.turned_at * first, how.tries
+    tol, tries = USUAL.turned_at * first, USUAL.tries
     root, found = secant(slope, 0.0, x1=first, tol=tol, maxiter=tries, full_output=True, disp=False)
-    near = found.converged and abs(root) < how.farthest * first
+    near = found.converged and abs(root) < USUAL.farthest * first
     return middle.past(float(root), under_load=under_load) if near else None
