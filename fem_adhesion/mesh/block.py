@@ -10,7 +10,7 @@ from skfem import MeshQuad, MeshTri
 
 from halfspace.elastic import grid
 from halfspace.errors import InputError
-from halfspace.values import Array, Index
+from halfspace.values import Array
 
 SizeFunction = Callable[[Array, Array], Array]
 """Largest edge wanted at (r, z), in beta."""
@@ -41,9 +41,16 @@ def quarter_disc(radius: float, size: SizeFunction) -> Any:
     diagonal = radius * np.sqrt(0.5)
     nodes = np.array([[0.0, radius, diagonal, 0.0], [0.0, 0.0, -diagonal, -radius]])
     mesh = MeshTri(nodes, np.array([[0, 0], [1, 2], [2, 3]]))
-    while len(large := _too_large(mesh, size)):
-        mesh = _on_arc(mesh.refined(large), radius)
-    return with_named_boundaries(mesh)
+    while True:
+        corners = mesh.p[:, mesh.t]
+        edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=0)
+        large = np.flatnonzero(edges.max(axis=0) > size(*corners.mean(axis=1)))
+        if not large.size:
+            return with_named_boundaries(mesh)
+        mesh = mesh.refined(large)
+        points, arc = mesh.p.copy(), np.unique(mesh.facets[:, mesh.facets_satisfying(_far, boundaries_only=True)])
+        points[:, arc] *= radius / np.linalg.norm(points[:, arc], axis=0)
+        mesh = MeshTri(points, mesh.t)
 
 
 def tensor_grid(r_breaks: Array, z_breaks: Array, interfaces: Sequence[float] = ()) -> Any:
@@ -74,22 +81,6 @@ def block_grid(fine: float, fine_radius: float, length: float, *, growth: float 
 def with_named_boundaries(mesh: Any) -> Any:
     """Return the mesh with its boundaries named "axis" (r = 0), "contact" (z = 0) and "far" (the rest)."""
     return mesh.with_boundaries({"axis": lambda x: x[0] == 0.0, "contact": lambda x: x[1] == 0.0, "far": _far})
-
-
-def _too_large(mesh: Any, size: SizeFunction) -> Index:
-    """Return the numbers of the triangles whose longest edge exceeds the size at the centroid."""
-    corners = mesh.p[:, mesh.t]
-    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=0)
-    large: Index = np.flatnonzero(edges.max(axis=0) > size(*corners.mean(axis=1)))
-    return large
-
-
-def _on_arc(mesh: Any, radius: float) -> Any:
-    """Return the mesh with the nodes of its far boundary at distance `radius` from the origin."""
-    nodes = np.unique(mesh.facets[:, mesh.facets_satisfying(_far, boundaries_only=True)])
-    points = mesh.p.copy()
-    points[:, nodes] *= radius / np.linalg.norm(points[:, nodes], axis=0)
-    return MeshTri(points, mesh.t)
 
 
 def _far(x: Array) -> Any:

@@ -70,31 +70,20 @@ class CurvedMapping(MappingIsoparametric):  # type: ignore[misc]
 
     def bndmap(self, i: int, X: Array, find: Any = None) -> Array:
         """Coordinate i of points of facets, which run from their first vertex to their second."""
-        Y, cells = self._on_cell(X, find)
+        Y, _, cells = self._on_cell(X, find)
         return self.Fmap(i, Y, cells)
 
     def bndJ(self, i: int, j: int, X: Array, find: Any = None) -> Array:  # noqa: ARG002 (a facet has one direction)
         """Derivative of coordinate i along facets."""
-        Y, cells = self._on_cell(X, find)
-        along = self._facet_directions(find)[:, :, None]
-        slopes = np.array([self._J(i, k, Y, cells) for k in range(2)])
-        return np.asarray(np.sum(slopes * along, axis=0))
+        Y, along, cells = self._on_cell(X, find)
+        return np.asarray(sum(self._J(i, k, Y, cells) * along[k][:, None] for k in range(2)))
 
-    def _on_cell(self, X: Array, find: Any) -> tuple[Array, Index]:
-        """Facet points as points (2, facets, q) of the reference square, and the facets' cells."""
-        start, along = self._facet_starts(find), self._facet_directions(find)
-        return start[:, :, None] + along[:, :, None] * X[0], self.mesh.f2t[0, find]
-
-    def _facet_starts(self, find: Any) -> Array:
-        return self._vertex(self.mesh.facets[0, find], find)
-
-    def _facet_directions(self, find: Any) -> Array:
-        return self._vertex(self.mesh.facets[1, find], find) - self._facet_starts(find)
-
-    def _vertex(self, vertices: Index, find: Any) -> Array:
-        """Reference places of vertices in the facets' cells, (2, facets)."""
-        cells = self.mesh.t[:, self.mesh.f2t[0, find]]
-        return CORNERS[:, np.argmax(cells == vertices, axis=0)]
+    def _on_cell(self, X: Array, find: Any) -> tuple[Array, Array, Index]:
+        """Facet points as points (2, facets, q) of the reference square, the facets' directions there, their cells."""
+        cells = self.mesh.f2t[0, find]
+        corners = (np.argmax(self.mesh.t[:, cells] == vertices, axis=0) for vertices in self.mesh.facets[:, find])
+        start, end = (CORNERS[:, corner] for corner in corners)
+        return start[:, :, None] + (end - start)[:, :, None] * X[0], end - start, cells
 
 
 @dataclass(repr=False)
