@@ -157,17 +157,13 @@ def attempts(
             solution = newton.solve(problem, x, newton.central_gap(gap))
             x = solution.x
         spent, load = time.perf_counter() - began, float(solution.observables[LOAD])
+        start = problem.undeformed(1.0)
+        start[:-2] = np.maximum(start[:-2], 0.0)
         for name, iterate in (every | ({"Greenwood's, relaxation 1.5": greenwood} if tabor in slow else {})).items():
-            yield _attempt(problem, name, iterate, load, spent)
-
-
-def _attempt(problem: ContactProblem, name: str, iterate: Iteration, load: float, newton_seconds: float) -> Attempt:
-    start = problem.undeformed(1.0)
-    start[:-2] = np.maximum(start[:-2], 0.0)
-    began, sweeps = time.perf_counter(), None
-    found = tried(iterate, problem, start)
-    if isinstance(found, Unsolved):
-        outcome = found.reason
-    else:
-        sweeps, outcome = found.sweeps, f"load within {abs(found.observables[LOAD] - load):.0e} R dgamma of Newton's"
-    return Attempt(problem.tabor, name, sweeps, outcome, time.perf_counter() - began, newton_seconds)
+            began, found = time.perf_counter(), tried(iterate, problem, start)
+            if isinstance(found, Unsolved):
+                sweeps, outcome = None, found.reason
+            else:
+                off = abs(found.observables[LOAD] - load)
+                sweeps, outcome = found.sweeps, f"load within {off:.0e} R dgamma of Newton's"
+            yield Attempt(tabor, name, sweeps, outcome, time.perf_counter() - began, spent)
