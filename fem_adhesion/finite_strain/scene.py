@@ -152,7 +152,8 @@ def find_jumps(scene: Scene, rtol: float = 1e-4, settings: Settings = USUAL) -> 
     """Solve for pull-off and jumps alone, without the curve between: from those of the linear body.
 
     Parameters, errors and error estimates as of `trace`, without the limit of the Tabor parameter; in the place of the
-    curve's mesh each event has one of its own.
+    curve's mesh each event has one of its own. It takes a third to two thirds of the time of `trace`, with the
+    same numbers, and serves scenes whose curve is lost.
     """
     _require(scene, rtol, COMPRESSION)
     rung = partial(Stages(scene, settings).rung, _lowest_degree(rtol, scene.tabor), LITTLE)
