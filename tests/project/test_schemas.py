@@ -9,7 +9,7 @@ from fnmatch import fnmatchcase
 import numpy as np
 import pytest
 from synthetic_curves import synthetic
-from whole_runs import GREENWOOD, ROOT
+from whole_runs import COMPARE, GREENWOOD, ROOT
 
 from fem_adhesion import cli
 from fem_adhesion.fitting.model import Apparatus, Other
@@ -28,15 +28,15 @@ LINES = {
     ],
     "assess": [f"assess {SI} --json a.json", f"assess {SOFT} --stiffness 0.5N/m --thickness 1um --json b.json"],
     "sweep": ["sweep --tabor 0.5 1 --csv s.csv"],
-    "compare": ["compare --tabor 0.5 --rtol 1e-3 --json c.json"],
     "benchmark": ["benchmark --problems sheets --names half-space-1", "benchmark {given}/their.csv --json b.json"],
     "fit": [
-        f"fit {{given}}/one.csv {TIP} --json one.json",
+        f"fit {{given}}/one.csv {TIP} --models jkr --json one.json",
         f"fit {{given}}/one.csv {{given}}/two.csv {TIP} --models jkr --csv many.csv --json many.json",
     ],
 }
 """Lines by section: between them they have every key."""
 WHOLE = {
+    "compare": COMPARE,
     "finite-sphere": "fem-adhesion finite-sphere --out sphere --quick",
     "speed": "fem-adhesion speed --out speed --quick",
     "greenwood": GREENWOOD,

@@ -198,10 +198,9 @@ def test_the_half_space_is_right_from_the_thickness_told(said):
             assert sign * (USUAL.wrong - off) > 0, (row.quantity, sign)
 
 
-@pytest.mark.parametrize(("thickness", "poisson"), [(0.5, 0.3), (0.15, 0.49)])
-def test_a_soft_film_has_jumps_and_loss_within_errors(thickness, poisson):
+def test_a_soft_film_has_jumps_and_loss_within_errors():
     """At the Tabor parameter from which on the film is JKR's with a bulge of its own: beside the computed one."""
-    units, layer = Units(2.0, 3.0, 5.0, 7.0), Layer(thickness, poisson)
+    units, layer = Units(2.0, 3.0, 5.0, 7.0), Layer(0.25, 0.49)
     path = halfspace.trace(300.0, body=layer, rtol=1e-4, to_load=2.0)
     for stiffness in (math.inf, 0.006):
         truth = computed("truth", path, stiffness, units)
