@@ -31,7 +31,7 @@ BLIND = 1e6  # largest ratio of two standard errors
 FARTHEST = 12.0  # coordinates beyond which nothing is asked for: a factor of 1e5
 FEW = 5  # samples on either side of a division at least, of which a slope is known
 APART = math.log(10) / 2  # of the Tabor parameters from which fits start
-NEARLY = 1.1  # chi square, in the least of those at these, up to which the least beside another one is looked for
+NEARLY = 1.1  # chi square in the least one, or in that of noise, up to which a fit counts as one
 NEAR = 0.05  # of the distance between fits within and beyond a profile, to which its end is looked for
 NODES = (0.25, 0.5, 0.75)  # of the way from the best Tabor parameter to either end, where the profile is fitted
 FINE = 401  # places between these on which intervals are read off
@@ -465,12 +465,8 @@ def profiled(
         here = problem.at(at, np.zeros(len(problem.fitted)))
         every[at] = here.settled(first(here), loose=True)
     fits = {at: one for at, one in every.items() if is_likely(one)} or every
-    grid = sorted(every)
-    for way in (grid, grid[::-1]):  # a fit ends in the nearest of some minima, and its neighbour in another
-        for near, at in pairwise(way):
-            if near in fits:
-                one = problem.at(at, fits[near].x).settled(fits[near].x)
-                fits[at] = min(one, fits.get(at, one), key=lambda each: each.chi2)
+    if min(fits.values(), key=lambda one: one.chi2).scale > NEARLY:
+        _exchange(problem, fits, sorted(every))
     least, most = (round(math.log(limit), 9) for limit in limits)
     scan = Scan(problem, (least, most), fits)
     if least == most:
@@ -481,6 +477,18 @@ def profiled(
     likely = [i for i, at in enumerate(order) if scan.rise(at) < 0]
     around = order[max(likely[0] - 1, 0) : likely[-1] + 2]
     return Profile(scan.best, tuple(scan.fits[at] for at in around), is_open)
+
+
+def _exchange(problem: Problem, fits: dict[float, Best], grid: Sequence[float]) -> None:
+    """Try each fit from its neighbours, both ways: that of a wrong model may end in one of some minima.
+
+    Of 200 curves that a model fits none changed; of three measured ones one came from 4 % above the least.
+    """
+    for way in (grid, grid[::-1]):
+        for near, at in pairwise(way):
+            if near in fits:
+                one = problem.at(at, fits[near].x).settled(fits[near].x, loose=True)
+                fits[at] = min(one, fits.get(at, one), key=lambda each: each.chi2)
 
 
 @dataclass(frozen=True, eq=False)

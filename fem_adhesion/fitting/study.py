@@ -15,14 +15,16 @@ from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.fitting.inference import NORMAL, SCALES, Best, Data, Place, Problem, Profile, Run, profiled
 from fem_adhesion.fitting.measured import APPROACH, BASE, ForceCurve, read
-from fem_adhesion.fitting.model import SOFTEST, STIFFEST, THEORIES, Apparatus, Other, Theory, by_jkr
+from fem_adhesion.fitting.model import SOFTEST, STIFFEST, THEORIES, Apparatus, Other, Theory, by_atlas, by_jkr
 from fem_adhesion.fitting.prepare import Prepared, prepare
 from fem_adhesion.fitting.traced import Traced, kind_of
 from halfspace.errors import InputError, Unsolved, tried
 from halfspace.limits import require_poisson
 from halfspace.values import Array
 
-TABORS = tuple(np.geomspace(STIFFEST, SOFTEST, 9))  # from which fits start; ten times the next
+TABORS = tuple(
+    np.geomspace(STIFFEST, SOFTEST, 17)
+)  # from which fits start; steps of 10 missed minima of 8 of 200 curves
 TRACED = STIFFEST, 100.0  # least and largest Tabor parameter to which traced models are followed
 FAR_OFF = 3.0  # times the measured pull-off force that a fit's may be
 STRAYED = 5.0  # standard errors from what was known at which a quantity makes up for a wrong model, and is held
@@ -74,9 +76,7 @@ class Candidate:
 
     name: str
     chi2: float
-    parameters: int
     criterion: float
-    apparatus: Apparatus
     values: Mapping[str, Value]
 
 
@@ -227,7 +227,7 @@ def _starts(theory: Theory, found: Mapping[str, Profile]) -> tuple[Sequence[floa
     """Tabor parameters from which a model's fits start, and the limits to which they go."""
     if isinstance(theory, Traced):
         return [found[ATLAS].best.tabor], TRACED
-    tabors = TABORS[-1:] if theory is by_jkr else TABORS
+    tabors = TABORS if theory is by_atlas else TABORS[-1:] if theory is by_jkr else TABORS[::2]
     return tabors, (tabors[0], tabors[-1])
 
 
@@ -354,9 +354,8 @@ def _candidates(found: Mapping[str, Profile]) -> tuple[Candidate, ...]:
     scale = min(profile.best.scale for profile in found.values())
     made = []
     for name, profile in found.items():
-        best, parameters = profile.best, profile.best.x.size + (profile.best.problem.theory is not by_jkr)
-        criterion = best.chi2 / scale + 2 * parameters
-        made.append(Candidate(name, best.chi2, parameters, criterion, best.apparatus, values_of(profile)))
+        values, chi2 = values_of(profile), profile.best.chi2
+        made.append(Candidate(name, chi2, chi2 / scale + 2 * len(values), values))
     return tuple(sorted(made, key=lambda one: one.criterion))
 
 

@@ -97,13 +97,13 @@ def _models(fit: Fit) -> Iterator[str]:
     work, first = fit.values["work_of_adhesion"], fit.candidates[0]
     own = next(one for one in fit.candidates if one.name == ATLAS)
     if own.criterion - first.criterion > CLEAR:
-        spread = abs(math.log(first.apparatus.work_of_adhesion / own.apparatus.work_of_adhesion))
+        spread = abs(math.log(first.values["work_of_adhesion"].value / work.value))
         yield (
             f"{first.name} fits better than the atlas, by {own.criterion - first.criterion:.3g} in Akaike's criterion; "
             f"its dgamma differs by {100 * spread:.2g} %."
         )
     for one in fit.candidates:
-        found = one.apparatus.work_of_adhesion
+        found = one.values["work_of_adhesion"].value
         is_like = one.criterion - first.criterion < CLEAR and one is not own
         if is_like and not (work.low or 0.0) <= found <= (work.high or math.inf):
             yield (
