@@ -134,7 +134,7 @@ def with_error(quantity: Estimate, scale: float = 1.0, digits: int = DIGITS) -> 
     uncertain = max(1, math.ceil(number.error * 10**decimals * (1 - 1e-9)))
     if uncertain == 10 and decimals:
         decimals, uncertain = decimals - 1, 1
-    return f"{number.value:.{decimals}f}({uncertain})"
+    return f"{number.value:z.{decimals}f}({uncertain})"
 
 
 def plus_minus(estimate: Estimate) -> str:
@@ -147,7 +147,7 @@ def digits(estimate: Estimate) -> str:
     if not (math.isfinite(estimate.value) and math.isfinite(estimate.error)):
         return f"{estimate.value:g}"
     decimals = 1 - math.floor(math.log10(estimate.error)) if estimate.error > 0 else 10
-    return f"{estimate.value:.{min(max(decimals, 1), 10)}f}"
+    return f"{estimate.value:z.{min(max(decimals, 1), 10)}f}"
 
 
 def engineering(value: float, unit: str) -> str:
