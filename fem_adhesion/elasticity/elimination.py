@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -168,10 +168,23 @@ def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
     The unknowns (k, cells) of the cells are below 0 where they are held; kept (n,) says which of all are in no region
     eliminated.
     """
-    first = [np.asarray(mesh.f2t[0, mesh.boundaries[name]], dtype=np.intp) for name in ("axis", "contact")]
     across = np.asarray(mesh.f2t[:, mesh.f2t[1] >= 0], dtype=np.intp)
-    ends = tuple(cells.tobytes() for cells in first)
-    return _dissected(unknowns.tobytes(), kept.tobytes(), across.tobytes(), ends, mesh.nelements)
+    ends = (mesh.f2t[0, mesh.boundaries[name]] for name in ("axis", "contact"))
+    chosen, regions = _halved(np.array([_steps(across, end, mesh.nelements) for end in ends]))
+    numbers = unknowns[:, chosen]
+    owners = _owners(numbers, regions, kept)
+    order = np.argsort(owners, kind="stable")  # in which they are eliminated
+    rank = np.append(np.argsort(order), -1)
+    made: list[Region] = []
+    for number, region in enumerate(regions):
+        parts = [] if region.stop - region.start <= LEAST else [made.pop(), made.pop()][::-1]
+        own = rank[numbers[:, region].T] if not parts else np.concatenate([rank[part.unknowns] for part in parts])
+        ranks = np.unique(own[own >= 0])
+        complete, left = (order[ranks[own]] for own in (owners[order[ranks]] == number, owners[order[ranks]] > number))
+        made.append(
+            Region(tuple(parts), chosen[region], left, complete, _places(parts, rank, own, ranks, complete.size))
+        )
+    return made[0]
 
 
 def eliminated_by(K: Array, done: Index, left: Index) -> tuple[Front, Array]:
@@ -241,27 +254,6 @@ def reduced_unknowns(dofs: Index, T: sparse.csc_array) -> tuple[Index, Array]:
     number[T.indices[T.indptr[:-1][selects]]] = np.flatnonzero(selects)
     t = T[:, gathering].toarray()[dofs].transpose(1, 0, 2)
     return np.vstack([number[dofs], np.where(t.any(axis=1), gathering, -1).T]), t
-
-
-@lru_cache(maxsize=1)
-def _dissected(unknowns: bytes, kept: bytes, across: bytes, ends: tuple[bytes, ...], cells: int) -> Region:
-    """All cells as a tree of regions; kept, as bodies are meshed for several contact radii near each other."""
-    pairs = np.frombuffer(across, dtype=np.intp).reshape(2, -1)
-    chosen, regions = _halved(np.array([_steps(pairs, np.frombuffer(end, dtype=np.intp), cells) for end in ends]))
-    numbers = np.frombuffer(unknowns, dtype=np.intp).reshape(-1, cells)[:, chosen]
-    owners = _owners(numbers, regions, np.frombuffer(kept, dtype=bool))
-    order = np.argsort(owners, kind="stable")  # in which they are eliminated
-    rank = np.append(np.argsort(order), -1)
-    made: list[Region] = []
-    for number, region in enumerate(regions):
-        parts = [] if region.stop - region.start <= LEAST else [made.pop(), made.pop()][::-1]
-        own = rank[numbers[:, region].T] if not parts else np.concatenate([rank[part.unknowns] for part in parts])
-        ranks = np.unique(own[own >= 0])
-        complete, left = (order[ranks[own]] for own in (owners[order[ranks]] == number, owners[order[ranks]] > number))
-        made.append(
-            Region(tuple(parts), chosen[region], left, complete, _places(parts, rank, own, ranks, complete.size))
-        )
-    return made[0]
 
 
 def _halved(steps: Index, start: int = 0) -> tuple[Index, list[slice]]:

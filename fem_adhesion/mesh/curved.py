@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -121,13 +121,8 @@ def of_cells(t: Index, points: Array) -> CurvedQuads:
 
 
 def shapes(degree: int, X: Array) -> tuple[Array, tuple[Array, Array]]:
-    """Products of Lagrange polynomials at reference points (2, ...), and their two derivatives; kept."""
-    return _shapes(degree, X.shape, X.tobytes())
-
-
-@lru_cache(maxsize=100)
-def _shapes(degree: int, shape: tuple[int, ...], places: bytes) -> tuple[Array, tuple[Array, Array]]:
-    (a, da), (b, db) = (lagrange_values(degree, x) for x in np.frombuffer(places).reshape(shape))
+    """Products of Lagrange polynomials at reference points (2, ...), and their two derivatives."""
+    (a, da), (b, db) = (lagrange_values(degree, x) for x in X)
 
     def product(f: Array, g: Array) -> Array:
         return (f[:, None] * g[None]).reshape(-1, *f.shape[1:])
