@@ -30,7 +30,7 @@ class Settings:
     root, beside
         Place of an event along the path to which it is found, and the second one from which it is sought again.
     degrees
-        Of the elements of a curve, until two in a row agree to rtol.
+        Of the elements of a curve, until the events of two in a row agree to rtol.
     separated
         Approach in eps at which the curve begins; the attraction is a hundredth of its maximum there.
     left_out
