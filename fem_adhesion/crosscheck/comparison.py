@@ -93,14 +93,11 @@ class Case:
 
 def solution_of(path: EquilibriumPath) -> dict[str, Any]:
     """Plain data of a curve, which may be read without a solver; the tolerance is in words."""
-    from halfspace.equilibrium.events import is_fold, tolerance_told
+    from halfspace.equilibrium.events import tolerance_told
 
-    events = {name: plain(event) for name, event in path.events.items() if name in EVENT_NAMES or is_fold(name)}
+    events = {name: plain(event) for name, event in path.events.items()}
     kept = {name: getattr(path, name) for name in ("jumps", "rtol", "missed", "unknowns", "seconds", "settings")}
     return {"events": events, **kept, "tolerance": tolerance_told(path.rtol, path.missed)}
-
-
-EVENT_NAMES = ("pull_off", "jump_on", "jump_off")
 
 
 # What can be compared
