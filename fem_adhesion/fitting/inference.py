@@ -22,7 +22,7 @@ from scipy.stats import chi2 as chi2_law
 from scipy.stats import norm
 
 from fem_adhesion.common.numbers import Measured
-from fem_adhesion.fitting.model import Apparatus, Branches, Other, Theory, recorded
+from fem_adhesion.fitting.model import Apparatus, Branches, Other, Theory, by_atlas, recorded
 from halfspace.values import Array
 
 LEVEL = 0.95  # of all intervals
@@ -245,7 +245,11 @@ class Problem:
         return math.log(value / known) * known / error if name in SCALES else (value - known) / error
 
     def _unit(self, name: str) -> float:
-        return self.other.units(self.start).displacement if name == "contact_point" else 1 / self.start.stiffness
+        return self._displacement if name == "contact_point" else 1 / self.start.stiffness
+
+    @cached_property
+    def _displacement(self) -> float:
+        return self.other.units(self.start).displacement
 
     def branches(self, apparatus: Apparatus) -> Branches:
         """Branches as they are recorded."""
@@ -465,7 +469,7 @@ def profiled(
         here = problem.at(at, np.zeros(len(problem.fitted)))
         every[at] = here.settled(first(here), loose=True)
     fits = {at: one for at, one in every.items() if is_likely(one)} or every
-    if min(fits.values(), key=lambda one: one.chi2).scale > NEARLY:
+    if problem.theory is by_atlas and min(fits.values(), key=lambda one: one.chi2).scale > NEARLY:
         _exchange(problem, fits, sorted(every))
     least, most = (round(math.log(limit), 9) for limit in limits)
     scan = Scan(problem, (least, most), fits)
