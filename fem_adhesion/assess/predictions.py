@@ -199,16 +199,13 @@ def large_tabor(tabor: float, stiffness: float, units: Units) -> Prediction:
 
 
 def large_tabor_on(layer: Layers, tabor: float, stiffness: float, units: Units) -> Prediction:
-    """JKR's theory with the reach of the attraction on a thin sample, tabor >= 300, as `large_tabor` else.
+    """JKR's theory with the reach of the attraction on a thin sample, tabor >= 300; `large_tabor` is without one.
 
     The distance grows where the spike at the edge is no longer narrow beside the thickness, and that of the jump on,
     and of the energy that it decides on, where the bulge is not.
     """
-    read, h, part = (
-        closed(ON_LAYER, partial(theories.jkr_on, layer), tabor, stiffness, units),
-        layer.thickness,
-        _remaining(tabor),
-    )
+    read = closed(ON_LAYER, partial(theories.jkr_on, layer), tabor, stiffness, units)
+    h, part = layer.thickness, _remaining(tabor)
     parts = {
         name: 1 + USUAL.bulge / h if "jump_on" in name else part * (1 + (USUAL.thin / h) ** 3) for name in QUANTITIES
     }

@@ -243,9 +243,9 @@ def _finite(contact: Contact) -> Prediction:
     if contact.profile:
         return _profile(contact)
     if units.tabor > USUAL.finite:
+        remedy = "take fem-adhesion curve with --body hemisphere" if units.tabor <= MOST else "JKR's theory holds"
         raise InputError(
-            f"tabor = {units.tabor:.4g} is outside tabor <= {USUAL.finite:g}, beyond which it takes long; "
-            "take fem-adhesion curve --body hemisphere"
+            f"tabor = {units.tabor:.4g} is outside tabor <= {USUAL.finite:g}, beyond which it takes long; {remedy}"
         )
     made = partial(Meshed, contact.mesh) if contact.mesh else Hemisphere
     body = made(radius_ratio=contact.smaller_ratio, grip=contact.grip, poisson=contact.smaller_poisson)

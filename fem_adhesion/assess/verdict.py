@@ -99,8 +99,9 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
     ]
     if contact.thickness:
         pressed, h = _over(wide, R) ** 2 * R, contact.thickness
+        if not contact.profile:
+            judged.append(("indentation over thickness", pressed / h, USUAL.strain, "finite strain matters"))
         judged += [
-            ("indentation over thickness", pressed / h, USUAL.strain, "finite strain matters"),
             ("spacing over thickness", units.spacing / h, USUAL.spacing, "its base attracts through the sample"),
         ]
     for what, value, limit, meaning in judged:

@@ -69,9 +69,10 @@ def parse(text: str, name: str) -> float:
 def metres_of(table: Path) -> float:
     """Size in m of the unit of a table of two lengths: 1 unless its first line says, as ``r_nm,z_nm``."""
     header = table.read_text(encoding="utf-8-sig", errors="replace").partition("\n")[0]
-    found = re.fullmatch(r"\W*\w+_([pnuµm]?m)\s*,\s*\w+_([pnuµm]?m)\s*", header)
-    if found and found[1] != found[2]:
-        raise InputError(f"{table} has {found[1]} and {found[2]} in its header, limit: one unit; convert a column")
+    found = re.fullmatch(r"\W*[^\W_]+_(\w+)\s*,\s*[^\W_]+_(\w+)\s*", header)
+    if found and (found[1] != found[2] or not re.fullmatch("[pnuµm]?m", found[1])):
+        units = " and ".join(dict.fromkeys(found.groups()))
+        raise InputError(f"{table} has {units} in its header, limit: one unit of pm, nm, um, mm, m; convert it")
     return parse(f"1{found[1]}", "radius") if found else 1.0
 
 

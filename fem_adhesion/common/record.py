@@ -27,7 +27,7 @@ from fem_adhesion.common.options import COMMAND
 from fem_adhesion.registry import record_of
 from halfspace.errors import InputError
 
-SCHEMA = 3
+SCHEMA = 4
 
 UNITS: Mapping[str, str] = {
     "arclength": "1",
@@ -72,10 +72,10 @@ def lines_of(table: Path, remedy: str = "run its command again") -> list[list[st
     """Lines of a CSV file, the names of its columns first; InputError if it is none, empty, or its lines differ."""
     try:
         with table.open(newline="", encoding="utf-8-sig") as stream:
-            lines = list(csv.reader(stream))
+            lines = [line for line in csv.reader(stream) if line]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{table} cannot be read as CSV: {getattr(error, 'strerror', error)}; {remedy}") from error
-    if not lines or not lines[0]:
+    if not lines:
         raise InputError(f"{table} is empty; {remedy}")
     for number, line in enumerate(lines, start=1):
         if len(line) != len(lines[0]):

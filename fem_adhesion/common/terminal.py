@@ -94,7 +94,7 @@ class Fitted:
             yield table
         else:
             for first, *row in zip(*(column.cells for column in self.columns), strict=True):
-                named = zip(self.columns[1:], row, strict=True)
+                named = ((column, cell) for column, cell in zip(self.columns[1:], row, strict=True) if cell)
                 parts = (f"{' '.join(column.header.split())}: {' '.join(cell.split())}" for column, cell in named)
                 yield Prose(
                     "; ".join([first, *(part.replace(" ", NO_BREAK) if len(part) < 40 else part for part in parts)])

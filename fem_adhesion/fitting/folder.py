@@ -185,7 +185,9 @@ def report(rows: Sequence[Row]) -> Group:
     ended = [row.get("reason") or ("misfit" if row["misfit"]["found"] else "") for row in rows]
     found = spreads(rows)
     second = [
-        Column("quantity", [each["name"].replace("_", " ") for each in found], words=True),
+        Column(
+            "quantity", [each["name"].replace("pull_off", "pull-off").replace("_", " ") for each in found], words=True
+        ),
         Column("curves", [str(each["curves"]) for each in found]),
     ]
     headers = {
@@ -198,7 +200,7 @@ def report(rows: Sequence[Row]) -> Group:
     for name, header in headers.items():
         second.append(Column(header, ["" if each[name] is None else sized(each[name], each["unit"]) for each in found]))
     title = ["over the curves, one standard deviation between them and within one"]
-    return Group(Fitted([*first, Column("", ended, words=True)]), Fitted(second, title), Prose(told(rows)))
+    return Group(Fitted([*first, Column("ended", ended, words=True)]), Fitted(second, title), Prose(told(rows)))
 
 
 def draw(rows: Sequence[Row]) -> Figure:
@@ -210,7 +212,7 @@ def draw(rows: Sequence[Row]) -> Figure:
             axes.set_axis_off()
             continue
         numbers = np.array([each.value for each in given])
-        highest = float(numbers.max() + np.ptp(numbers))  # where an open end is drawn to
+        highest = float(numbers.max() + max(np.ptp(numbers), 0.1 * numbers.max()))  # where an open end is drawn to
         lows = [0.0 if each.low is None and name not in FORCES else each.low or each.value for each in given]
         highs = [highest if each.high is None and name not in FORCES else each.high or each.value for each in given]
         widths = np.abs(np.clip([lows, highs], 0, max(highest, numbers.max() * 1.1)) - numbers)

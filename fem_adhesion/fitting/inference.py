@@ -22,7 +22,8 @@ from scipy.stats import chi2 as chi2_law
 from scipy.stats import norm
 
 from fem_adhesion.common.numbers import Measured
-from fem_adhesion.fitting.model import Apparatus, Branches, Other, Theory, by_atlas, recorded
+from fem_adhesion.fitting.model import Apparatus, Branches, Other, Theory, by_atlas, by_jkr, recorded
+from halfspace.errors import tried
 from halfspace.values import Array
 
 LEVEL = 0.95  # of all intervals
@@ -37,6 +38,9 @@ NODES = (0.25, 0.5, 0.75)  # of the way from the best Tabor parameter to either 
 FINE = 401  # places between these on which intervals are read off
 RANGE = 7.0  # logarithms beyond which an end is open: a factor of a thousand
 ROUNDS = 5  # of dividing runs and fitting; two are usual
+MEAN_PULL_OFF = 1.75 * math.pi  # R dgamma, between JKR's and Bradley's
+FAR_OFF = 3.0  # times the measured pull-off force, or a part of it, that no fit has
+WALL = 1e4  # residual of a factor of e beyond: more than those of all samples of a wrong model
 STEP, SHIFT = 1e-3, 0.01  # of derivatives by coordinates and ln tabor: they see past the kinks and errors of a curve
 
 
@@ -194,7 +198,8 @@ class Problem:
     """Likelihood of an apparatus at a Tabor parameter, as residuals whose squares sum up to -2 ln of it.
 
     At a given Tabor parameter one curve of the theory serves, and what is fitted scales and shifts it; the spacing
-    follows. `start` holds all parameters, `fitted` the names of those that are moved, `prior` what was known of some.
+    follows. `start` holds all parameters, `fitted` the names of those that are moved, `prior` what was known of some,
+    `pull_off` is the force of the data's in N, as recorded.
     """
 
     theory: Theory
@@ -203,6 +208,7 @@ class Problem:
     start: Apparatus
     fitted: tuple[str, ...]
     prior: Mapping[str, Measured]
+    pull_off: float
     recorded_stiffness: float | None = None
     log_tabor: float = 0.0
     curve: Array = field(default_factory=lambda: np.empty((2, 0)))
@@ -262,7 +268,12 @@ class Problem:
         samples = self.data.compared(self.data.modelled(found))
         places = [((found.on if at.jump == "on" else found.off) - at.travel) / at.error for at in self.data.places]
         known = [self.departure(name, getattr(apparatus, name)) for name in self.prior]
-        return np.concatenate([samples, places, known])
+        return np.concatenate([samples, places, known, [self._wall(apparatus)]])
+
+    def _wall(self, apparatus: Apparatus) -> float:
+        """Residual that keeps the pull-off near the data's: a contact point far off makes a minimum without one."""
+        force = MEAN_PULL_OFF * self.other.units(apparatus).load / apparatus.sensitivity
+        return WALL * max(abs(math.log(force / self.pull_off)) - math.log(FAR_OFF), 0.0)
 
     def jacobian(self, x: Array) -> Array:
         """Derivatives of the residuals by the coordinates."""
@@ -324,8 +335,13 @@ class Best:
 
     @property
     def degrees(self) -> int:
-        """Degrees of freedom, the coefficients of the baseline taken off."""
-        return int(len(self.jacobian) - self.problem.data.baseline.shape[1] - self.x.size - 1)
+        """Degrees of freedom, the coefficients of the baseline taken off; the wall is no datum."""
+        return int(len(self.jacobian) - 1 - self.problem.data.baseline.shape[1] - self.parameters)
+
+    @property
+    def parameters(self) -> int:
+        """How many were fitted, the Tabor parameter among them, which JKR's theory does not have."""
+        return self.x.size + (self.problem.theory is not by_jkr)
 
     @property
     def scale(self) -> float:
@@ -418,10 +434,12 @@ class Profile:
 
     def interval(self, name: str) -> tuple[float | None, float | None]:
         """Ends of a parameter's interval in SI; None if the curve leaves one open."""
-        _, lows, highs = self.region(name, self.best.scale * self._factor(name) ** 2)
+        rise = self.best.scale * self._factor(name) ** 2
+        _, lows, highs = self.region(name, rise)
         ends, middle = (float(lows.min()), float(highs.max())), self.best.coordinate(name)
         if name == "spacing":  # the smaller the Tabor parameter, the larger is the spacing
-            rigid, soft = self.ends
+            within = [one.chi2 - self.best.chi2 <= rise for one in (self.fits[0], self.fits[-1])]
+            rigid, soft = (is_open and low for is_open, low in zip(self.ends, within, strict=True))
             return None if soft else math.exp(ends[0]), None if rigid else math.exp(ends[1])
         known = [name not in SCALES or abs(end - middle) < RANGE for end in ends]
         low, high = (
@@ -435,7 +453,7 @@ class Profile:
         Thousands of samples make a normal error, but the share of a place in a parameter's error may be all of it.
         """
         influence = self.best.gradient(name) @ np.linalg.pinv(self.best.whole)
-        first = len(influence) - len(self.best.problem.data.places) - len(self.best.problem.prior)
+        first = len(influence) - len(self.best.problem.data.places) - len(self.best.problem.prior) - 1
         uniform = [at.is_uniform for at in self.best.problem.data.places]
         shares = (influence**2 / np.sum(influence**2))[first : first + len(uniform)] * uniform
         u, weights = np.polynomial.legendre.leggauss(32)
@@ -458,19 +476,17 @@ def profiled(
     tabors: Sequence[float],
     limits: tuple[float, float],
     first: Callable[[Problem], Array],
-    is_likely: Callable[[Best], bool],
 ) -> Profile:
     """Profile that starts from some Tabor parameters, and goes on within limits until the least is between two.
 
-    `first` gives coordinates to begin with, `is_likely` says of fits at the first Tabor parameters which to keep.
+    `first` gives coordinates to begin with.
     """
-    every = dict[float, Best]()
+    fits = dict[float, Best]()
     for at in (round(math.log(tabor), 9) for tabor in tabors):
         here = problem.at(at, np.zeros(len(problem.fitted)))
-        every[at] = here.settled(first(here), loose=True)
-    fits = {at: one for at, one in every.items() if is_likely(one)} or every
+        fits[at] = here.settled(first(here), loose=True)
     if problem.theory is by_atlas and min(fits.values(), key=lambda one: one.chi2).scale > NEARLY:
-        _exchange(problem, fits, sorted(every))
+        _exchange(problem, fits)
     least, most = (round(math.log(limit), 9) for limit in limits)
     scan = Scan(problem, (least, most), fits)
     if least == most:
@@ -483,16 +499,16 @@ def profiled(
     return Profile(scan.best, tuple(scan.fits[at] for at in around), is_open)
 
 
-def _exchange(problem: Problem, fits: dict[float, Best], grid: Sequence[float]) -> None:
+def _exchange(problem: Problem, fits: dict[float, Best]) -> None:
     """Try each fit from its neighbours, both ways: that of a wrong model may end in one of some minima.
 
     Of 200 curves that a model fits none changed; of three measured ones one came from 4 % above the least.
     """
+    grid = sorted(fits)
     for way in (grid, grid[::-1]):
         for near, at in pairwise(way):
-            if near in fits:
-                one = problem.at(at, fits[near].x).settled(fits[near].x, loose=True)
-                fits[at] = min(one, fits.get(at, one), key=lambda each: each.chi2)
+            one = problem.at(at, fits[near].x).settled(fits[near].x, loose=True)
+            fits[at] = min(one, fits[at], key=lambda each: each.chi2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -508,8 +524,14 @@ class Scan:
         at = round(float(np.clip(at, *self.limits)), 9)
         if at not in self.fits:
             near = self.fits[min(self.fits, key=lambda other: abs(other - at))]
-            self.fits[at] = self.problem.at(at, near.x).settled(near.x)
+            found = tried(lambda: self.problem.at(at, near.x).settled(near.x), refusals=True)
+            self.fits[at] = found or self._refused(near, at)
         return self.fits[at].chi2
+
+    def _refused(self, near: Best, at: float) -> Best:
+        """Stand-in where a traced part has no such contact, as a sphere less wide than its spacing: most unlikely."""
+        chi2 = self.best.chi2 * (1 + WALL)
+        return replace(near, problem=replace(near.problem, log_tabor=at), chi2=chi2)
 
     def rise(self, at: float) -> float:
         """Chi square over the best one, less that at which a pair of parameters is unlikely."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,11 +13,23 @@ from scipy.stats import chi2, norm
 
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.common.numbers import Measured
-from fem_adhesion.fitting.inference import NORMAL, SCALES, Best, Data, Place, Problem, Profile, Run, profiled
+from fem_adhesion.fitting.inference import (
+    MEAN_PULL_OFF,
+    NORMAL,
+    SCALES,
+    Best,
+    Data,
+    Place,
+    Problem,
+    Profile,
+    Run,
+    profiled,
+)
 from fem_adhesion.fitting.measured import APPROACH, BASE, ForceCurve, read
 from fem_adhesion.fitting.model import SOFTEST, STIFFEST, THEORIES, Apparatus, Other, Theory, by_atlas, by_jkr
 from fem_adhesion.fitting.prepare import Prepared, prepare
-from fem_adhesion.fitting.traced import Traced, kind_of
+from fem_adhesion.fitting.traced import Traced
+from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.errors import InputError, Unsolved, tried
 from halfspace.limits import require_poisson
 from halfspace.values import Array
@@ -26,7 +38,6 @@ TABORS = tuple(
     np.geomspace(STIFFEST, SOFTEST, 17)
 )  # from which fits start; steps of 10 missed minima of 8 of 200 curves
 TRACED = STIFFEST, 100.0  # least and largest Tabor parameter to which traced models are followed
-FAR_OFF = 3.0  # times the measured pull-off force that a fit's may be
 STRAYED = 5.0  # standard errors from what was known at which a quantity makes up for a wrong model, and is held
 CLEAR = 6.0  # difference of Akaike's criterion from which one model is clearly preferred: a likelihood ratio of 20
 ATLAS = "atlas"
@@ -41,6 +52,7 @@ UNITS: Mapping[str, str] = {
     "compliance": "m/N",
 }
 """Parameters and their units in SI."""
+LIMITS = {"sensitivity": (0.1, 10.0)}  # beyond, a wrong unit is likelier; others are positive
 MEDIAN = float(norm.isf(0.25))  # size of a normal error, in its standard deviation
 WHITE = 1e-3  # chance below which residuals are no noise
 
@@ -192,6 +204,8 @@ def fit(
     named = {"radius": radius, "modulus": modulus, "stiffness": stiffness}
     named |= {"sensitivity": sensitivity, "compliance": compliance}
     given = {name: each if isinstance(each, Measured) else Measured(each) for name, each in named.items()}
+    for name, one in given.items():
+        _require_within(name, one.value)
     if (counter_modulus is None) != (counter_poisson is None):
         raise InputError("counter_modulus without counter_poisson, limit: both or none; give the other too")
     other = Other(
@@ -202,31 +216,48 @@ def fit(
     )
     for name in models:
         if name not in THEORIES:
-            kind_of(name)
+            Traced(name, other.poisson).require(given["radius"].value, counter=counter_modulus or counter_radius)
     prepared = prepare(curve)
-    loads = 2 * 1.75 * math.pi * float(np.max(curve.force - prepared.background)) / prepared.pull_off
+    loads = 2 * MEAN_PULL_OFF * float(np.max(curve.force - prepared.background)) / prepared.pull_off
     named_models = {
-        name: THEORIES.get(name) or Traced(name, other.poisson, max(loads, 5.0)) for name in (ATLAS, *models)
+        name: THEORIES.get(name) or Traced(name, other.poisson, max(loads, COMPRESSION)) for name in (ATLAS, *models)
     }
-    begin, found, unsolved = in_turn(progress, len(named_models)), dict[str, Profile](), dict[str, str]()
-    for name, theory in named_models.items():
-        if isinstance(theory, Traced):
-            theory.scene(other.units(found[ATLAS].best.apparatus))  # refuse a word before any work
-        begin(name)
-        starts = _starts(theory, found)
-        profile = tried(profile_of, theory, *starts, prepared, given, other, refusals=True)
-        if isinstance(profile, Unsolved):
-            unsolved[name] = profile.reason
-        else:
-            found[name] = profile
+    found, unsolved = _profiles(named_models, prepared, given, other, in_turn(progress, len(named_models)))
     atlas = found[ATLAS]
     return Fit(prepared, values_of(atlas), atlas, _candidates(found), _branches(atlas.best), unsolved)
+
+
+def _require_within(name: str, value: float) -> None:
+    least, most = LIMITS.get(name, (0.0, math.inf))
+    if not (least < value < most or (name == "compliance" and value == 0)):
+        raise InputError(f"{name} = {value:g} is outside {least:g} < {name} < {most:g}; check its unit")
+
+
+def _profiles(
+    theories: Mapping[str, Theory],
+    prepared: Prepared,
+    given: Mapping[str, Measured],
+    other: Other,
+    begin: Callable[[str], None],
+) -> tuple[dict[str, Profile], dict[str, str]]:
+    """Profiles of the models, that of the atlas first, and why others have none."""
+    found, unsolved = dict[str, Profile](), dict[str, str]()
+    for name, theory in theories.items():
+        begin(name)
+        profile = tried(profile_of, theory, *_starts(theory, found), prepared, given, other, refusals=True)
+        if not isinstance(profile, Unsolved):
+            found[name] = profile
+        elif theory is by_atlas:
+            raise InputError(f"the atlas cannot be fitted to this curve: {profile.reason}")
+        else:
+            unsolved[name] = profile.reason
+    return found, unsolved
 
 
 def _starts(theory: Theory, found: Mapping[str, Profile]) -> tuple[Sequence[float], tuple[float, float]]:
     """Tabor parameters from which a model's fits start, and the limits to which they go."""
     if isinstance(theory, Traced):
-        return [found[ATLAS].best.tabor], TRACED
+        return [float(np.clip(found[ATLAS].best.tabor, *TRACED))], TRACED
     tabors = TABORS if theory is by_atlas else TABORS[-1:] if theory is by_jkr else TABORS[::2]
     return tabors, (tabors[0], tabors[-1])
 
@@ -277,7 +308,7 @@ def profile_of(
     start = {key: each.value for key, each in given.items()}
     if math.isinf(given["modulus"].deviation):
         start["modulus"] = _hertz(prepared, start, other)
-    work = prepared.pull_off * start["sensitivity"] / (1.75 * math.pi * start["radius"])
+    work = prepared.pull_off * start["sensitivity"] / (MEAN_PULL_OFF * start["radius"])
     problem = Problem(
         theory,
         other,
@@ -285,6 +316,7 @@ def profile_of(
         Apparatus(**start, work_of_adhesion=work, spacing=1.0, contact_point=prepared.contact),
         ("work_of_adhesion", "contact_point", *moved),
         prior,
+        prepared.pull_off,
         given["stiffness"].value if prepared.curve.deflection_given else None,
     )
 
@@ -298,12 +330,7 @@ def profile_of(
         x[1] = problem.coordinate("contact_point", prepared.contact + shift)
         return x
 
-    def has_pull_off(one: Best) -> bool:
-        """Whether a fit's pull-off force is near the measured one: a contact point far off makes a minimum without."""
-        load = other.units(one.apparatus).load / one.apparatus.sensitivity
-        return 1 / FAR_OFF < load * 1.75 * math.pi / prepared.pull_off < FAR_OFF
-
-    found = profiled(problem, tabors, limits, first, has_pull_off)
+    found = profiled(problem, tabors, limits, first)
     known = [key for key in prior if key in SCALES and key not in held]
     strayed = [key for key in known if abs(problem.departure(key, getattr(found.best.apparatus, key))) > STRAYED]
     if strayed:
@@ -355,7 +382,7 @@ def _candidates(found: Mapping[str, Profile]) -> tuple[Candidate, ...]:
     made = []
     for name, profile in found.items():
         values, chi2 = values_of(profile), profile.best.chi2
-        made.append(Candidate(name, chi2, chi2 / scale + 2 * len(values), values))
+        made.append(Candidate(name, chi2, chi2 / scale + 2 * profile.best.parameters, values))
     return tuple(sorted(made, key=lambda one: one.criterion))
 
 

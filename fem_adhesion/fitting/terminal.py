@@ -36,7 +36,7 @@ def _values(fit: Fit) -> Fitted:
         Column("quantity", [name.replace("_", " ") for name in values], words=True),
         Column("value", [words.sized(value.value, value.unit) for value in values.values()]),
         Column("95 %", [words.interval(value) for value in values.values()]),
-        Column("", ["" if value.identified else "not identified" for value in values.values()], words=True),
+        Column("note", ["" if value.identified else "not identified" for value in values.values()], words=True),
     ]
     return Fitted(columns, [f"fit of the atlas: tabor = {units.tabor:.3g}"])
 

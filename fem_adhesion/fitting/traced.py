@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 
@@ -15,13 +16,15 @@ from fem_adhesion.common.words import part_in
 from fem_adhesion.fitting.model import BEYOND, FARTHEST, THEORIES
 from fem_adhesion.registry import PARTS, class_of
 from fem_adhesion.scene import Scene
+from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.contact import APPROACH, LOAD
-from halfspace.errors import InputError
+from halfspace.errors import InputError, Unsolved, tried
 from halfspace.scaling import Units
 from halfspace.values import Array
 
 KINDS = ("law", "profile", "body")
 RTOL = 1e-4  # of the traces
+WORK, SPACING = 0.05, 0.3e-9  # J/m^2 and m, usual ones
 SAME = 1e-3  # arclength between states that are one
 PLACES = 1600  # on the spline through the states of a path: loads err by 0.03 R dgamma at most
 
@@ -52,10 +55,24 @@ class Traced:
 
     word: str
     poisson: float
-    to_load: float
+    to_load: float = COMPRESSION
+
+    def require(self, radius: float, counter: float | None) -> None:
+        """Raise InputError for a word that is refused at every Tabor parameter, by a radius in m and usual adhesion.
+
+        Or for a body, or a sphere, where there is a counter-body: it would have the pair's radius and compliance.
+        """
+        kind, name = kind_of(self.word), self.word.partition(":")[0]
+        if counter and (kind == "body" or "radius_ratio" in PARTS[kind][name].parameters):
+            raise InputError(f"model = {self.word} with a counter-body, limit: laws and other profiles; leave it out")
+        moduli = (WORK * math.sqrt(radius / (tabor * SPACING) ** 3) for tabor in (100.0, 1.0, 0.01))
+        found = [tried(self.scene, Units(radius, E, WORK, SPACING), refusals=True) for E in moduli]
+        reasons = [one.reason for one in found if isinstance(one, Unsolved)]
+        if len(reasons) == len(found):
+            raise InputError(f"model = {self.word}: {reasons[1]}")
 
     def scene(self, units: Units) -> Scene:
-        """Scene of a contact; InputError if the word names no part."""
+        """Scene of a contact; InputError if the part does not go with it."""
         kind, name = kind_of(self.word), self.word.partition(":")[0]
         unit = units.spacing if kind == "law" else units.length
 

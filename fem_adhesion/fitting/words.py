@@ -203,9 +203,9 @@ def series(fit: Fit) -> Iterator[str]:
             continue
         i, j = (fit.best.problem.fitted.index(each) for each in ("work_of_adhesion", name))
         correlation = covariance[i, j] / math.sqrt(covariance[i, i] * covariance[j, j])
-        slope = covariance[i, j] / covariance[j, j]
-        by = f"; a per cent more of it goes with {slope:+.2g} % of dgamma" if name == "sensitivity" else ""
-        yield f"dgamma and {NAMES[name]} are fitted together, correlation {correlation:+.2f}{by}."
+        moved = 100 * math.sqrt(fit.best.scale) * covariance[i, j] / math.sqrt(covariance[j, j])
+        by = f"one standard error more of {NAMES[name]} goes with {moved:+.2g} % of dgamma"
+        yield f"dgamma and {NAMES[name]} are fitted together, correlation {correlation:+.2f}: {by}."
 
 
 def counted_samples(fit: Fit) -> str:

@@ -22,16 +22,16 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.common.terminal import Prose, broken, make_console
 
     words = files("fem_adhesion.words").joinpath("data/glossary.md").read_text(encoding="utf-8").replace("\\", "")
-    console, asked, found = make_console(), " ".join(options.word).casefold(), False
+    console, asked, found = make_console(), [word.casefold() for word in options.word], False
     for entry in words.split("\n\n"):
         head, _, text = entry.partition("\n: ")
-        if text and asked in head.casefold():
+        if text and (not asked or any(word in head.casefold() for word in asked)):
             found = True
             console.print(Prose(head, "bold"), Text(indent(broken(" ".join(text.split()), console.width - 4), " " * 4)))
         elif not text and not asked:
             console.print(f"\n{entry.removeprefix('### ')}", style="underline")
     if not found:
-        raise InputError(f"word = {asked} is not explained; fem-adhesion words lists all that are")
+        raise InputError(f"word = {' '.join(asked)} is not explained; fem-adhesion words lists all that are")
     return AGREE
 
 

@@ -107,7 +107,7 @@ class RoundedPunch(Endless):
 
     def __post_init__(self) -> None:
         remedy = "a narrower one is a paraboloid, of a wider one each edge is straight"
-        keep(self, flat=require_between(self.flat, "flat", 0.1, 5.0, remedy, " of the punch"))
+        keep(self, flat=require_between(self.flat, "flat", 0.1, 5.0, remedy, " beta of the punch"))
 
     def _rise(self, radii: Array) -> Array:
         """Return sqrt(a^2 + u^2) - a, without cancellation."""

@@ -225,6 +225,10 @@ def test_the_command_writes_what_it_found(tmp_path, models, capsys):
     assert "atlas fits best; jkr is worse by" in " ".join(capsys.readouterr().out.split())
 
 
+SPHERE = "--radius", "50nm", "--modulus", "1GPa", "--poisson", "0.3"
+COUNTER = "--counter-modulus", "1GPa", "--counter-poisson", "0.3"
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [
@@ -235,6 +239,9 @@ def test_the_command_writes_what_it_found(tmp_path, models, capsys):
             "model = 'hertz', limit: one of atlas, maugis",
         ),
         (["--radius", "50nm", "--modulus", "1GPa", "--poisson", "0.3", "--counter-modulus", "1GPa"], "both or none"),
+        ([*SPHERE, "--sensitivity", "0"], "sensitivity = 0 is outside 0.1 < sensitivity < 10"),
+        ([*SPHERE, "--models", "morse:no"], "k = 'no' is not a number"),
+        ([*SPHERE, "--models", "layer:2", *COUNTER], "model = layer:2 with a counter-body"),
     ],
 )
 def test_bad_input_is_one_line(tmp_path, options, said, capsys):
@@ -245,3 +252,9 @@ def test_bad_input_is_one_line(tmp_path, options, said, capsys):
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+def test_a_part_that_does_not_go_with_a_soft_contact_leaves_the_fit_of_the_atlas():
+    found = _fit(_truth(200.0, 0.3e-9, 0.1), 0.01, models=("sphere", "power-law:3,9"))
+    assert "the sphere is as small as its contact" in found.unsolved["sphere"]
+    assert {one.name for one in found.candidates} == {"atlas", "power-law:3,9"}

@@ -29,3 +29,13 @@ def test_a_real_curve_gives_its_pull_off_and_what_yields_besides_the_spring():
     assert 0.3e-9 < found.values["spacing"].low < found.values["spacing"].high < 3e-9
     assert found.misfit
     assert any("does not fit" in line for line in words.warnings(found))
+
+
+def test_a_fit_that_misses_keeps_to_the_measured_pull_off():
+    pytest.importorskip("NSFopen")
+    found = fem_adhesion.fit(
+        DATA / "spectroscopy_two.nid", radius=10e-9, modulus=70e9, poisson=0.17, stiffness=2.724, models=()
+    )
+    assert found.misfit
+    rigid = found.prepared.pull_off / (2 * math.pi * 10e-9)
+    assert found.values["work_of_adhesion"].value == pytest.approx(rigid, rel=0.5)

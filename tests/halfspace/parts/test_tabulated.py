@@ -272,9 +272,10 @@ def test_a_tip_in_another_unit_is_refused_with_the_factor(tmp_path, capsys):
     tip = written(tmp_path / "tip.csv", r / unit * float(factor), r**2 / 40e-9 / unit * float(factor))
     for table in (tip, by_header):
         assert cli.main([*curve, "--profile", f"tabulated:{table}", "--rtol", "1e-2"]) == 0
-    by_header.write_text(by_header.read_text().replace("z_nm", "z_um"))
-    assert cli.main([*curve, "--profile", f"tabulated:{by_header}"]) == 2
-    assert "has nm and um in its header, limit: one unit" in capsys.readouterr().err
+    for header, units in (("r_nm,z_um", "nm and um"), ("r_A,z_A", "A"), ("r_nm,z_furlong", "nm and furlong")):
+        by_header.write_text(f"{header}\n" + tip.read_text())
+        assert cli.main([*curve, "--profile", f"tabulated:{by_header}"]) == 2
+        assert f"has {units} in its header, limit: one unit" in capsys.readouterr().err
 
 
 def test_a_tip_that_turns_back_is_refused(tmp_path):
