@@ -14,7 +14,7 @@ from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.spread import Spread
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.thin_sample import ThinSample
-from fem_adhesion.assess.verdict import percent
+from fem_adhesion.assess.verdict import percent, the
 from fem_adhesion.common import record as common
 from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain
@@ -75,7 +75,7 @@ def _answer(assessment: Assessment) -> Iterator[RenderableType]:
     if not best.values.keys() & {"jump_on_separation", "jump_off_separation"}:
         yield Prose("  no jumps: the contact follows the apparatus smoothly")
     off = [
-        f"the {one.model} is off by up to {percent(one.size)}, in {WORDS[one.worst]}"
+        f"{the(one.model)} is off by up to {percent(one.size)}, in {WORDS[one.worst]}"
         for one in assessment.distances
         if one.model == assessment.half_space.model and one.worst
     ]
@@ -257,7 +257,7 @@ def _deviations(assessment: Assessment, digits: int) -> Iterator[RenderableType]
         ("both" if both else assessment.best.model, [d.total for d in known]),
     )
     columns = [_percents(*cause, digits) for cause in causes if any(cause[1])]
-    title = f"difference from the {assessment.half_space.model}, in % of it, by cause"
+    title = f"difference from {the(assessment.half_space.model)}, in % of it, by cause"
     yield Fitted([_words(d.quantity for d in known), *columns], [title])
     yield Text()
 
@@ -271,7 +271,7 @@ def _distances(assessment: Assessment) -> Iterator[RenderableType]:
         Column("in", [WORDS[row.worst] if row.worst else "-" for row in rows], words=True),
         Column("has", [f"{count - len(row.missing)} of {count}" for row in rows]),
     ]
-    yield Fitted(columns, [f"how far each model is from the {assessment.best.model}"])
+    yield Fitted(columns, [f"how far each model is from {the(assessment.best.model)}"])
     yield Text()
 
 

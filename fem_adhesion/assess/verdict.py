@@ -144,19 +144,24 @@ def verdict(best: Prediction, distances: Sequence[Distance], *, computed: bool, 
     The distances, from `ranked`, are from the best one; `computed` says whether that is of the bodies as they are.
     """
     if not computed:
-        return f"the finite body is not known: judge the {best.model} by the cautions"
+        return f"the finite body is not known: judge {the(best.model)} by the cautions"
     whole = [distance for distance in distances if distance.worst and not distance.missing]
     good = [distance.model for distance in whole if distance.size <= USUAL.good]
-    trust = f"trust the {best.model}"
+    trust = f"trust {the(best.model)}"
     if doubts:
         meanings = ", ".join(dict.fromkeys(doubt.rpartition(": ")[2] for doubt in doubts))
-        trust = f"trust no model as it is: {meanings}; of these the {best.model} leaves out least"
+        trust = f"trust no model as it is: {meanings}; of these {the(best.model)} leaves out least"
     if good:
         return f"{trust}; within {percent(USUAL.good)} in every quantity: {', '.join(good)}"
     if whole:
-        nearest = f"the {whole[0].model} is nearest, off by up to {percent(whole[0].size)}"
+        nearest = f"{the(whole[0].model)} is nearest, off by up to {percent(whole[0].size)}"
         return f"{trust}; no other model is within {percent(USUAL.good)} in every quantity, {nearest}"
     return f"{trust}; no other model has all its quantities"
+
+
+def the(model: str) -> str:
+    """Name of a model in a sentence: theories that are named after their authors take no article."""
+    return {"rigid": "the rigid sphere"}.get(model, model if model[0].isupper() else f"the {model}")
 
 
 def percent(part: float) -> str:

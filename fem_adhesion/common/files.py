@@ -308,7 +308,7 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
         present = _present(directory)
     _require_folder(directory, directory.parent if present is None else directory)
     if present and not force and not (resume and (directory / FOLDER).is_dir()):
-        remedy = "it is no study to resume, choose another" if resume else "choose another or use --resume"
+        remedy = "it is no study to resume, choose another" if resume else f"choose another or use --resume {directory}"
         forced = "" if force is None else " or --force"
         raise InputError(f"{directory} holds {present} files, limit 0; {remedy}{forced}")
     store = Store(directory, code)

@@ -33,8 +33,8 @@ def kind_of(word: str) -> str:
     """Kind of the part that a word names, or InputError."""
     kind = next((kind for kind in KINDS if word.partition(":")[0] in PARTS[kind]), None)
     if kind is None:
-        known = ", ".join(name for kind in KINDS for name in PARTS[kind])
-        raise InputError(f"model = {word!r}, limit: one of {', '.join(THEORIES)}, {known}; choose another")
+        known = ", ".join(dict.fromkeys([*THEORIES, *(name for kind in KINDS for name in PARTS[kind])]))
+        raise InputError(f"model = {word!r}, limit: one of {known}; choose another")
     return kind
 
 
@@ -85,7 +85,7 @@ class Traced:
         return Scene(units.tabor, **{kind: part})
 
     def __call__(self, units: Units) -> Array:
-        """Approach in eps and load in R dgamma, (2, n), with the attraction continued as the law's tail has it."""
+        """Approach in eps and load in R dgamma, (2, n); beyond the first state a power of the gap."""
         scene = self.scene(units)
         if scene.left_out:
             path = convergence.trace(scene, rtol=RTOL, to_load=self.to_load)
@@ -100,5 +100,7 @@ class Traced:
         curve = states(np.linspace(along[0], along[-1], PLACES)).T
         first, pull = curve[:, 0]
         h = (1 - first) * (FARTHEST * (1 + units.tabor) / (1 - first)) ** np.linspace(1.0, 0.0, BEYOND)[:-1]
-        tail = pull * ((1 - first) / h) ** (scene.law.decay - 1)
+        # The power by which the load falls with the gap; none of a law that does not reach so far.
+        falling = (1 - first) / pull * rates[0, 1] / rates[0, 0] if pull else 0.0
+        tail = pull * ((1 - first) / h) ** falling
         return np.hstack([[1 - h, tail], curve])

@@ -27,7 +27,7 @@ from halfspace.limits import require_between
 from halfspace.profiles import Paraboloid
 from halfspace.values import States, Valued
 
-LIMITS = {"tabor": (0.02, 5.0), "poisson": (0.0, 0.49), "rtol": (1e-4, 0.1), "to_load": (0.0, 20.0)}
+LIMITS = {"tabor": (0.02, 5.0), "poisson": (0.0, 0.49), "rtol": (1e-4, 0.1), "to_load": (1e-3, 20.0)}
 
 # The path
 

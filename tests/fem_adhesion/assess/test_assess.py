@@ -453,7 +453,7 @@ def test_a_rubber_bead_is_left_to_the_closed_theories(bead):
     assert bead.half_space.values["pull_off_force"].value == pytest.approx(1.5 * np.pi * 50e-6 * 0.05, rel=1e-4)
     assert bead.finite is None
     assert any("finite sphere not solved: tabor = 874.3 is outside tabor <= 10" in line for line in bead.cautions)
-    assert bead.verdict == "the finite body is not known: judge the JKR with attraction by the cautions"
+    assert bead.verdict == "the finite body is not known: judge JKR with attraction by the cautions"
     deviation = next(d for d in bead.deviations if d.quantity == "pull_off_force")
     sphere = JKRSphere(units.tabor, units.radius_ratio).pull_off().load
     assert deviation.profile.value == pytest.approx(sphere / theories.JKR_PULL_OFF - 1, rel=1e-3)
@@ -506,7 +506,7 @@ def _verdict(half_space, profile, finite, *theories):
             None,
             ("finite pair", 1.0),
             ("rigid", 1.2),
-            "trust the finite pair; no other model is within 1 % in every quantity, the rigid is nearest, "
+            "trust the finite pair; no other model is within 1 % in every quantity, the rigid sphere is nearest, "
             "off by up to 20 %",
         ),
     ],
