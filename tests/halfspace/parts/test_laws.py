@@ -85,7 +85,7 @@ def test_the_default_is_lennard_jones():
         (lambda: Dlvo(0.1, 0), "screening = 0 is outside 0.02 <= screening <= 50"),
         (lambda: Dugdale(0.01), "width = 0.01 of Dugdale's law is outside 0.07 <= width <= 0.5; extrapolate from"),
         (lambda: Power(1), "k = 1 of the profile is outside 1.5 <= k <= 10; round a cone's tip"),
-        (lambda: RoundedPunch(20), "flat = 20 of the punch is outside 0.1 <= flat <= 5"),
+        (lambda: RoundedPunch(20), "flat = 20 beta of the punch is outside 0.1 <= flat <= 5"),
         (lambda: Hyperboloid(0), "b = 0 of the hyperboloid is outside 0.01 <= b < inf"),
     ],
 )
