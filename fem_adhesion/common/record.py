@@ -72,15 +72,17 @@ def lines_of(table: Path, remedy: str = "run its command again") -> list[list[st
     """Lines of a CSV file, the names of its columns first; InputError if it is none, empty, or its lines differ."""
     try:
         with table.open(newline="", encoding="utf-8-sig") as stream:
-            lines = [line for line in csv.reader(stream) if line]
+            reader = csv.reader(stream)
+            found = [(reader.line_num, line) for line in reader if line]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{table} cannot be read as CSV: {getattr(error, 'strerror', error)}; {remedy}") from error
-    if not lines:
+    if not found:
         raise InputError(f"{table} is empty; {remedy}")
-    for number, line in enumerate(lines, start=1):
-        if len(line) != len(lines[0]):
-            raise InputError(f"{table}, line {number}: {len(line)} cells, not {len(lines[0])}; {remedy}")
-    return lines
+    _, names = found[0]
+    for number, line in found:
+        if len(line) != len(names):
+            raise InputError(f"{table}, line {number}: {len(line)} cells, not {len(names)}; {remedy}")
+    return [line for _, line in found]
 
 
 def read(path: Path) -> Mapping[str, Any]:
