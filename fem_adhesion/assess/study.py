@@ -243,7 +243,9 @@ def _finite(contact: Contact) -> Prediction:
     if contact.profile:
         return _profile(contact)
     if units.tabor > USUAL.finite:
-        remedy = "take fem-adhesion curve with --body hemisphere" if units.tabor <= MOST else "JKR's theory holds"
+        remedy = (
+            "take fem-adhesion curve with --body hemisphere" if units.tabor <= USUAL.computed else "JKR's theory holds"
+        )
         raise InputError(
             f"tabor = {units.tabor:.4g} is outside tabor <= {USUAL.finite:g}, beyond which it takes long; {remedy}"
         )
