@@ -115,6 +115,11 @@ def _digest(path: Path, _changed: int) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+def curve_of(row: Row) -> str:
+    """File of a row, and the number of the curve in it."""
+    return f"{Path(row['file']).name} {row['number'] or ''}".strip()
+
+
 def values(rows: Sequence[Row], name: str) -> list[Value]:
     """Values of a quantity in the rows that have it; a force that was found without a model has no interval."""
     return [Value(*map(row[name].get, ("value", "low", "high", "unit"))) for row in rows if name in row]
@@ -177,7 +182,7 @@ def report(rows: Sequence[Row]) -> Group:
     def cells(name: str, text: Callable[[Value], str]) -> list[str]:
         return [text(values([row], name)[0]) if name in row else "" for row in rows]
 
-    first = [Column("curve", [f"{Path(row['file']).name} {row['number'] or ''}".strip() for row in rows], words=True)]
+    first = [Column("curve", [curve_of(row) for row in rows], words=True)]
     for name in SHOWN[:2]:
         first.append(Column(name.replace("_", " "), cells(name, lambda value: sized(value.value, value.unit))))
         first.append(Column("95 %", cells(name, interval)))

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import Any, final
+from typing import final
 from xml.etree import ElementTree
 
 from matplotlib import rc_context
@@ -17,7 +17,6 @@ from matplotlib import rc_context
 from fem_adhesion.common import record
 from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.lines import UNSTABLE, smooth
-from fem_adhesion.common.numbers import engineering
 from fem_adhesion.common.page import Figure, Section, Table, data_rows, render, template_text
 from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck import comparison
@@ -25,6 +24,9 @@ from fem_adhesion.crosscheck.comparison import CLOSED_FORM, SOLVERS, TRIANGLES, 
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve.load import STATES
 from fem_adhesion.curve.solve import Curves
+from fem_adhesion.fitting.folder import curve_of, values
+from fem_adhesion.fitting.study import Value
+from fem_adhesion.fitting.words import interval, sized
 from fem_adhesion.report.walk import Walk, walk_data, walk_words
 from halfspace.errors import InputError
 
@@ -243,8 +245,8 @@ def fit_section(file: Path | None) -> Section:
     names = [name for name in ("work_of_adhesion", "spacing", "pull_off") if any(name in row for row in rows)]
     lines = [
         (
-            f"{Path(row['file']).name} {row['number'] or ''}".strip(),
-            *(_measured(row[name]) if name in row else "" for name in names),
+            curve_of(row),
+            *(_measured(values([row], name)[0]) if name in row else "" for name in names),
             row.get("model", row.get("reason", "")),
             "yes" if row.get("misfit", {}).get("found") else "",
         )
@@ -259,11 +261,10 @@ def fit_section(file: Path | None) -> Section:
     return Section("fit", title, paragraphs=cautions, figures=figures, tables=tables)
 
 
-def _measured(value: Mapping[str, Any]) -> str:
-    """Value with the ends of its interval, where they are known."""
-    low, high = (engineering(value[end], value["unit"]) if value.get(end) else "" for end in ("low", "high"))
-    ends = f"{low} to {high}" if low and high else f"above {low}" if low else f"below {high}" if high else ""
-    return f"{engineering(value['value'], value['unit'])}{f' ({ends})' if ends else ''}"
+def _measured(value: Value) -> str:
+    """Value with its interval, where an end of that is known."""
+    number = sized(value.value, value.unit)
+    return number if value.low is None and value.high is None else f"{number} ({interval(value)})"
 
 
 def _svg(file: Path) -> bytes:
