@@ -32,11 +32,11 @@ def _truth(tabor, spacing, stiffness, **more):
     return Apparatus(RADIUS, modulus, WORK, spacing, 2e-7, stiffness * RADIUS * WORK / spacing, **more)
 
 
-def _fit(truth, noise, seed=2, theory=None, models=(), **more):
+def _fit(truth, noise, seed=2, theory=None, models=(), count=250, **more):
     """Fit of a synthetic curve with noise as a part of the pull-off force."""
     size = 2 * np.pi * RADIUS * WORK
     rng = np.random.default_rng(seed)
-    made = {"noise": noise * size, "correlation": 0.3, "offset": 0.1 * size, "drift": 0.05 * size, "count": 250}
+    made = {"noise": noise * size, "correlation": 0.3, "offset": 0.1 * size, "drift": 0.05 * size, "count": count}
     data = synthetic(truth, Other(POISSON), rng, **made, **({"theory": theory} if theory else {}))
     given = {"radius": RADIUS, "modulus": truth.modulus, "poisson": POISSON, "stiffness": truth.stiffness}
     return fem_adhesion.fit(data.curve, **given | {"sensitivity": FREE} | more, models=models)
@@ -70,6 +70,13 @@ def test_intervals_hold_the_truth(tabor, stiffness, noise):
         assert value.identified, name
         assert _holds(value, getattr(truth, name)), name
     assert not found.misfit
+
+
+def test_a_valley_of_the_profile_is_found_between_fits_on_a_slope():
+    """Between Tabor parameters 0.32 and 1, whose chi square falls on to a plateau from 10 on, 9 above the truth's."""
+    found = _fit(_truth(0.5, 0.3e-9, 0.018, sensitivity=0.85), 0.005, seed=6, count=1000)
+    assert found.best.tabor == pytest.approx(0.5, rel=0.1)
+    assert _holds(found.values["spacing"], 0.3e-9)
 
 
 def test_jkr_bounds_the_spacing_above_only():
