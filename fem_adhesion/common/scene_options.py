@@ -31,6 +31,7 @@ MATERIAL = ("radius", "modulus", "poisson", "work_of_adhesion")
 LAW = ("spacing", "hamaker")  # one of both
 COUNTER = ("counter_modulus", "counter_poisson", "counter_radius")
 SI_ONLY = ("radius", "modulus", "work_of_adhesion", *LAW, "counter_modulus", "counter_radius")
+ATOM = 1e-10  # radius in m of an atom, below which nothing is a sphere
 APEX = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
 MATERIALS = {"small": "linear-elastic", "finite": "neo-hookean"}  # by the strain
 
@@ -261,7 +262,12 @@ def inputs_of(options: argparse.Namespace, **more: Any) -> Inputs:
         for name in (*MATERIAL, *LAW, *COUNTER, "stiffness", "thickness")
         if (text := getattr(options, name, None)) is not None
     }
-    return Inputs({name: measured(str(text), name) for name, text in named.items()}, {"law": law, **more})
+    quantities = {name: measured(str(text), name) for name, text in named.items()}
+    for name in quantities.keys() & {"radius", "counter_radius"}:
+        if quantities[name].value < ATOM:
+            limit = f"{ATOM:g} m <= {name}, the size of an atom"
+            raise InputError(f"{name} = {named[name]} is outside {limit}; give a larger one, as 100nm")
+    return Inputs(quantities, {"law": law, **more})
 
 
 def stiffness_of(options: argparse.Namespace, contact: Contact | None) -> float:

@@ -10,6 +10,7 @@ from typing import Any, Generic, TextIO, TypeVar
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
 
 from fem_adhesion.common import page
 from fem_adhesion.common.numbers import joined
@@ -68,6 +69,12 @@ def plain_ticks(axis: Any, ticks: Sequence[float]) -> None:
     """Ticks of a logarithmic axis as plain numbers."""
     axis.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
     axis.set_ticks([], minor=True)
+
+
+def engineering_ticks(axis: Any, unit: str) -> None:
+    """Ticks of an axis with engineering prefixes, and a plain zero."""
+    write = EngFormatter(unit)
+    axis.set_major_formatter(lambda value, place: write(value, place) if value else "0")
 
 
 def arrow(axes: Any, tail: Point, head: Point, *, zorder: float = 3, clipped: bool | None = None, **look: Any) -> None:

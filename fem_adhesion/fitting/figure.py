@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
 from fem_adhesion.common import style
 from fem_adhesion.fitting.study import Fit
@@ -53,6 +53,6 @@ def draw(fit: Fit) -> Figure:
         (right.xaxis, "J/m²"),
         (right.yaxis, "m"),
     ):
-        axis.set_major_formatter(EngFormatter(unit))
+        style.engineering_ticks(axis, unit)
     right.xaxis.set_major_locator(MaxNLocator(3))
     return figure

@@ -61,10 +61,10 @@ def _values(text: str) -> Sequence[float]:
         first, last, count = float(parts[0]), float(parts[1]), int(parts[2])
     except (ValueError, IndexError) as error:
         raise InputError(f"tabor = {text} is no number and not FROM:TO:COUNT; write 0.05:50:200, say") from error
-    if len(parts) > 3 or not 2 <= count <= MOST or not (min(first, last) > 0 and max(first, last) < math.inf):
-        raise InputError(
-            f"tabor = {text}, limit: FROM:TO:COUNT, both positive and finite, COUNT 2 to {MOST}; write 0.05:50:200, say"
-        )
+    outside = not (min(first, last) > 0 and max(first, last) < math.inf) or first == last
+    if len(parts) > 3 or not 2 <= count <= MOST or outside:
+        limit = f"FROM:TO:COUNT, FROM and TO positive, finite and different, COUNT 2 to {MOST}"
+        raise InputError(f"tabor = {text}, limit: {limit}; write 0.05:50:200, say")
     return [float(value) for value in geomspace(first, last, count)]
 
 

@@ -130,8 +130,11 @@ class Tabulated:
     @property
     def findings(self) -> tuple[str, ...]:
         """What the table has, in words."""
-        apex = f"apex radius {self.radius:.6g} +- {self.radius_error:.1g} in the table's unit"
-        return apex, f"residual {self.residual * self.radius_ratio / self.radius:.2g} eps"
+        error = f" +- {self.radius_error:.1g}" if self.radius_error > 1e-6 * self.radius else ""  # six digits are told
+        return (
+            f"apex radius {self.radius:.6g}{error} in the table's unit",
+            f"residual {self.residual * self.radius_ratio / self.radius:.2g} eps",
+        )
 
     def surface(self, tabor: float) -> Surface:
         """Heights in beta^2/R; raise InputError where the tip is as small as its contact."""

@@ -199,6 +199,7 @@ def test_assess_refuses_in_one_line_before_any_work(arguments, message, monkeypa
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["curve", "--radius", "1e-30nm", *MATERIAL[2:], "--spacing", "1nm"], "is outside 1e-10 m <= radius"),
         (["curve", "--radius", "-100nm", *MATERIAL[2:], "--spacing", "1nm"], "radius = -100nm is outside 0 < radius"),
         (
             ["curve", "--adhesion", "1J/m^2"],

@@ -171,7 +171,9 @@ def test_a_range_is_of_equal_ratios_with_both_ends(text, values):
     assert tabors_of([text, text]) == tabors_of([text])
 
 
-@pytest.mark.parametrize("text", ["1:2", "1:2:x", "0:1:5", "1:2:1", "1:2:3:4", "400", "1:inf:5", "1:2:99999999999"])
+@pytest.mark.parametrize(
+    "text", ["1:2", "1:2:x", "0:1:5", "1:2:1", "1:2:3:4", "1:1:3", "400", "1:inf:5", "1:2:99999999999"]
+)
 def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, text):
     table = tmp_path / "table.csv"
     assert cli.main(["sweep", f"--tabor={text}", "--csv", str(table)]) == 2
