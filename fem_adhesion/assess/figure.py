@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,12 +10,11 @@ from matplotlib.figure import Figure
 from fem_adhesion.assess.predictions import Prediction
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.study import Assessment
-from fem_adhesion.assess.theories import loop
 from fem_adhesion.common import style
 from fem_adhesion.common.lines import smooth
 from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import cycle, reaching
+from halfspace.equilibrium.devices import reaching
 from halfspace.values import Array
 
 LINES: tuple[dict[str, Any], ...] = (
@@ -49,9 +47,9 @@ def draw(assessment: Assessment) -> Figure:
         look = {"linewidth": 1.0, "zorder": 3, **THEORIES[theory.model]}
         axes.plot(*scaled(*_line(theory, assessment)), label=theory.model, **look)
     right = separations[1] * 10.0**-metres
-    for tail, head in _jumps(assessment):
+    for jump in assessment.best.jumps:
         # A jump along its load line, to the edge of the frame if it lands beyond.
-        (x, y), (x_end, y_end) = scaled(*tail), scaled(*head)
+        (x, y), (x_end, y_end) = (scaled(end.approach, end.load) for end in jump)
         part = min(1.0, (right - x) / (x_end - x)) if x_end > x else 1.0
         end = (x + part * (x_end - x), y + part * (y_end - y))
         style.arrow(axes, (x, y), end, clipped=False, linewidth=1.5, color=style.RED)
@@ -102,16 +100,3 @@ def _line(model: Prediction, assessment: Assessment) -> tuple[Array, Array]:
     load = np.where(np.arange(load.size) == touching, np.nan, load)
     kept = np.arange(touching % USUAL.thinned, load.size, USUAL.thinned)
     return approach[kept], load[kept]
-
-
-def _jumps(assessment: Assessment) -> Iterator[tuple[Ends, Ends]]:
-    """Take-off and landing, in approach and load, of the two jumps of the model to trust."""
-    stiffness, curve = assessment.contact.reduced_stiffness, assessment.best.curve
-    pairs: list[Any] = []
-    if isinstance(curve, EquilibriumPath):
-        computed = cycle(curve, stiffness)
-        pairs = [(jump.take_off, jump.landing) for jump in (computed.jump_on, computed.jump_off)] if computed else []
-    elif curve is not None:
-        found = loop(curve, stiffness)
-        pairs = [found.jump_on, found.jump_off] if found else []
-    yield from (((a.approach, a.load), (b.approach, b.load)) for a, b in pairs)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Literal
 
@@ -17,8 +17,9 @@ from halfspace import atlas
 from halfspace.elastic.layers import Layers
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import approach_scale, tolerance_told
+from halfspace.equilibrium.events import Event, approach_scale, tolerance_told
 from halfspace.scaling import Units
+from halfspace.theories.closed_forms import ContactState
 from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
 from halfspace.values import Array, Estimate
 
@@ -71,7 +72,8 @@ class Prediction:
     they overlap; ``jump_on_base`` and ``jump_off_base`` the position in m of its base, positive towards the wall, zero
     where the undeformed surfaces would be one spacing apart with the cantilever straight. ``energy_lost`` in J is that
     of a cycle of approach and separation. By state of a computed curve or of its jumps, `missed` are the numbers that
-    are less accurate than was asked. The source says whether a solver computed them for this contact, or they are read
+    are less accurate than was asked; `jumps` has both ends, take-off and landing, of those on and off, dimensionless.
+    The source says whether a solver computed them for this contact, or they are read
     from the atlas, or off a closed theory, which has a contact radius of its own.
     """
 
@@ -80,6 +82,7 @@ class Prediction:
     curve: EquilibriumPath | Array | None = field(default=None, repr=False, compare=False)
     missed: Mapping[str, Sequence[str]] = field(default_factory=dict)
     source: Literal["solver", "atlas", "theory"] = "theory"
+    jumps: Sequence[tuple[Event, Event] | tuple[ContactState, ContactState]] = ()
 
     @property
     def warning(self) -> str:
@@ -106,13 +109,15 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
             found |= _take_off(name, at.estimate("approach"), at.estimate("load"), stiffness)
         found["energy_lost"] = round_trip.energy_lost
     missed = path.missed | (round_trip.missed if round_trip else {})
-    return Prediction(model, _in_si(found, units), path, missed, "solver")
+    jumps = [round_trip.jump_on.ends, round_trip.jump_off.ends] if round_trip else []
+    return Prediction(model, _in_si(found, units), path, missed, "solver", jumps)
 
 
 def on_atlas(model: str, tabor: float, stiffness: float, units: Units) -> Prediction:
     """Read the half-space from the atlas, 0.01 <= tabor <= 300, and its curve as samples."""
-    (values,) = read_atlas([tabor], [stiffness], [units])
-    return Prediction(model, values, theories.half_space(tabor, stiffness), source="atlas")
+    (values,), curve = read_atlas([tabor], [stiffness], [units]), theories.half_space(tabor, stiffness)
+    jumps = loop(curve, stiffness)
+    return Prediction(model, values, curve, source="atlas", jumps=[jumps.jump_on, jumps.jump_off] if jumps else [])
 
 
 def read_atlas(
@@ -175,7 +180,7 @@ def closed(
         for name, (at, _) in (("jump_on", jumps.jump_on), ("jump_off", jumps.jump_off)):
             found |= _take_off(name, Estimate(at.approach, jumps.spacing), Estimate(at.load, 0.0), stiffness)
         found["energy_lost"] = estimated(curve, lambda c: getattr(loop(c, stiffness), "energy_lost", math.nan))
-    return Prediction(model, _in_si(found, units), curve)
+    return Prediction(model, _in_si(found, units), curve, jumps=[jumps.jump_on, jumps.jump_off] if jumps else [])
 
 
 def _take_off(name: str, approach: Estimate, load: Estimate, stiffness: float) -> dict[str, Estimate]:
@@ -192,39 +197,24 @@ def _in_si(found: Mapping[str, Estimate], units: Units) -> dict[str, Quantity]:
 MEASURED = {"force": "load", "radius": "radius", "separation": "approach", "base": "approach", "lost": "energy"}
 
 
-def large_tabor(tabor: float, stiffness: float, units: Units) -> Prediction:
-    """JKR's theory with the reach of the attraction, its errors being the distance from the truth: tabor >= 300."""
-    read, part = closed(ATTRACTING, theories.jkr_with_reach, tabor, stiffness, units), _remaining(tabor)
-    return _widened(read, {name: 1.0 if "jump_on" in name else part for name in QUANTITIES})
+def large_tabor(tabor: float, stiffness: float, units: Units, layer: Layers | None = None) -> Prediction:
+    """JKR's theory with the reach of the attraction, its errors being the distance from the truth: tabor >= 300.
 
-
-def large_tabor_on(layer: Layers, tabor: float, stiffness: float, units: Units) -> Prediction:
-    """JKR's theory with the reach of the attraction on a thin sample, tabor >= 300; `large_tabor` is without one.
-
-    The distance grows where the spike at the edge is no longer narrow beside the thickness, and that of the jump on,
-    and of the energy that it decides on, where the bulge is not.
+    On a thin sample the distance grows where the spike at the edge is no longer narrow beside the thickness, and that
+    of the jump on, and of the energy that it decides on, where the bulge is not.
     """
-    read = closed(ON_LAYER, partial(theories.jkr_on, layer), tabor, stiffness, units)
-    h, part = layer.thickness, _remaining(tabor)
+    model, make = (ON_LAYER, partial(theories.jkr_on, layer)) if layer else (ATTRACTING, theories.jkr_with_reach)
+    read, h = closed(model, make, tabor, stiffness, units), layer.thickness if layer else math.inf
+    part = (USUAL.computed / tabor) ** USUAL.decay
     parts = {
         name: 1 + USUAL.bulge / h if "jump_on" in name else part * (1 + (USUAL.thin / h) ** 3) for name in QUANTITIES
     }
-    return _widened(read, parts | {"energy_lost": part * (1 + (USUAL.bulge / h) ** 3)})
-
-
-def _remaining(tabor: float) -> float:
-    """Distance of the theory at a Tabor parameter, in that at the last that is computed."""
-    return float((USUAL.computed / tabor) ** USUAL.decay)
-
-
-def _widened(read: Prediction, parts: Mapping[str, float]) -> Prediction:
-    """Prediction of some quantities, its errors raised by parts of the distances of `MEASURES`."""
+    parts["energy_lost"] = part * (1 + (USUAL.bulge / h) ** 3)
     values = {
         name: Quantity.of(q * Estimate(1.0, MEASURES[name][1] * parts[name]), 1.0, q.unit)
         for name, q in read.values.items()
-        if name in parts
     }
-    return Prediction(read.model, values, read.curve)
+    return replace(read, values=values)
 
 
 def exact_sphere(units: Units) -> Prediction:

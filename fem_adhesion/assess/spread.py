@@ -20,7 +20,7 @@ from fem_adhesion.common.contact import Contact, Inputs
 from halfspace.values import Array
 
 ONE_SIGMA = tuple(map(float, ndtr([-1.0, 0.0, 1.0])))  # 15.9, 50 and 84.1 %: value and spread of a normal distribution
-MOST_POISSON = 0.4999
+MOST = dict.fromkeys(("poisson", "counter_poisson"), 0.4999)  # largest value of an input, where it has one
 Model = Callable[[Contact], Mapping[str, Quantity]]
 
 
@@ -107,7 +107,7 @@ def _changes(inputs: Inputs, name: str, model: Model) -> dict[str, float]:
     """Changes of the numbers by a standard deviation of an input, to the first order by a central difference."""
     value, deviation = inputs.quantities[name]
     step = max(USUAL.step * deviation, min(USUAL.least_step * value, deviation))
-    low, high = (min(max(value + side * step, 0.0), _most(name)) for side in (-1, 1))
+    low, high = (min(max(value + side * step, 0.0), MOST.get(name, math.inf)) for side in (-1, 1))
     before, after = (model(inputs.contact(**{name: x})) for x in (low, high))
     return {q: (after[q].value - before[q].value) / (high - low) * deviation for q in before.keys() & after.keys()}
 
@@ -117,12 +117,7 @@ def _draws(inputs: Inputs) -> list[dict[str, float]]:
     order, drawn = np.random.default_rng(0), dict[str, Array]()
     for name, deviation in inputs.deviations.items():
         value = inputs.quantities[name].value
-        low, high = ndtr((0.0 - value) / deviation), ndtr((_most(name) - value) / deviation)
+        low, high = ndtr((0.0 - value) / deviation), ndtr((MOST.get(name, math.inf) - value) / deviation)
         parts = (order.permutation(USUAL.draws) + 0.5) / USUAL.draws
         drawn[name] = value + deviation * ndtri(low + (high - low) * parts)
     return [dict(zip(drawn, map(float, row), strict=True)) for row in zip(*drawn.values(), strict=True)]
-
-
-def _most(name: str) -> float:
-    """Largest value of an input."""
-    return MOST_POISSON if "poisson" in name else math.inf

@@ -113,7 +113,7 @@ def assess(contact: Contact, progress: Progress = unheard, inputs: Inputs | None
         for name, make in THEORIES.items()
         if within or make is not maugis_dugdale
     )
-    begin("sphere's profile")
+    begin("profile")
     profile, reason = _tried(PROFILE, _profile, contact) if contact.layer or not contact.shape else (None, None)
     body = _body(contact)
     begin(body)
@@ -260,7 +260,7 @@ def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = U
     """A profile on a thin sample; of a large Tabor parameter the paraboloid."""
     tabor = contact.units.tabor
     if tabor > USUAL.computed:
-        return predictions.large_tabor_on(layer, tabor, contact.reduced_stiffness, contact.units)
+        return predictions.large_tabor(tabor, contact.reduced_stiffness, contact.units, layer)
     traced = partial(_traced, ON_LAYER, contact, profile=profile, body=layer)
     return tried(traced, rtol) or traced(rtol / 10)  # a jump's landing, lost on a path, may be found on a finer one
 

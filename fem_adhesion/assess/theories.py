@@ -138,7 +138,7 @@ def estimated(curve: Array, quantity: Callable[[Array], float]) -> Estimate:
 
 def pull_off(curve: Array) -> ContactState:
     """State of least load."""
-    return _state(curve[:, np.argmin(curve[1])])
+    return ContactState(*curve[:, np.argmin(curve[1])].tolist())
 
 
 def zero_load(curve: Array) -> ContactState:
@@ -146,15 +146,11 @@ def zero_load(curve: Array) -> ContactState:
     return _rising(curve, curve[1], 0.0)
 
 
-def _state(sample: Array) -> ContactState:
-    return ContactState(*map(float, sample))
-
-
 def _rising(curve: Array, quantity: Array, value: float) -> ContactState:
     """State where a quantity of the samples last rises through a value; linear in between."""
     i = int(np.flatnonzero((quantity[:-1] <= value) & (quantity[1:] > value))[-1])
     t = (value - quantity[i]) / (quantity[i + 1] - quantity[i])
-    return _state((1 - t) * curve[:, i] + t * curve[:, i + 1])
+    return ContactState(*((1 - t) * curve[:, i] + t * curve[:, i + 1]).tolist())
 
 
 def loop(curve: Array, stiffness: float) -> Loop | None:
@@ -173,7 +169,8 @@ def loop(curve: Array, stiffness: float) -> Loop | None:
     ends = float(base[off]), float(base[on])
     lost = _work(base[apart], load[apart], *ends) - _work(base[contact], load[contact], *ends)
     spacing = float(np.max(np.abs(np.diff(approach)[[on - 1, off]])))
-    return Loop((_state(curve[:, on]), landed), (_state(curve[:, off]), parted), lost, spacing)
+    took_off, left = (ContactState(*curve[:, at].tolist()) for at in (on, off))
+    return Loop((took_off, landed), (left, parted), lost, spacing)
 
 
 def _work(base: Array, load: Array, low: float, high: float) -> float:

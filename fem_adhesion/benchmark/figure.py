@@ -34,7 +34,7 @@ def draw(found: Diagnosis) -> Figure:
     names = [f"{row.problem}: " * several + row.quantity.replace("_", " ") for row in rows]
     axes.set_yticks(places, labels=names, fontsize=9)
     style.dress(axes, "deviation as a part of our value", "", legend="below")
-    axes.set_title(f"cause: {' or '.join(found.whole.causes)}", fontsize=11)
+    axes.set_title(f"cause: {' or '.join(found.causes)}", fontsize=11)
     if curve is not None and curve.curve is not None:
         theirs, (approach, load) = curve.curve, curve.problem.curve[:2]
         shown = (approach > theirs[0].min() - 0.5) & (approach < theirs[0].max() + 0.5)

@@ -66,36 +66,33 @@ class Fit:
 
 
 @dataclass(frozen=True)
-class Named:
-    """Causes of some numbers, the likely one and those that fit alike, and the fits of all causes from the best."""
-
-    causes: Sequence[str]
-    fits: Sequence[Fit]
-
-
-@dataclass(frozen=True)
 class Diagnosis:
-    """Rows, and what is named, of the whole submission and of each problem alone."""
+    """Rows, causes and fits of a submission.
+
+    The causes are the likely one and those that fit alike, `problems` those of each problem alone; the fits are of all
+    causes, from the best.
+    """
 
     rows: Sequence[Row]
-    whole: Named
-    problems: Mapping[str, Named]
+    causes: Sequence[str]
+    fits: Sequence[Fit]
+    problems: Mapping[str, Sequence[str]]
     submitted: Sequence[Submitted]
 
     @property
     def cause(self) -> str:
         """The most likely."""
-        return self.whole.causes[0]
+        return self.causes[0]
 
     @property
     def record(self) -> dict[str, Any]:
         """Everything for JSON."""
         return {
             "cause": self.cause,
-            "alike": self.whole.causes[1:],
+            "alike": self.causes[1:],
             "remedy": REMEDIES[self.cause],
-            "problems": {name: {"cause": p.causes[0], "alike": p.causes[1:]} for name, p in self.problems.items()},
-            "fits": [asdict(fit) for fit in self.whole.fits],
+            "problems": {name: {"cause": own[0], "alike": own[1:]} for name, own in self.problems.items()},
+            "fits": [asdict(fit) for fit in self.fits],
             "rows": [asdict(row) for row in self.rows],
         }
 
@@ -105,13 +102,15 @@ def diagnose(submitted: Sequence[Submitted]) -> Diagnosis:
     tables = [[_row(one.problem, number) for number in one.numbers] for one in submitted]
     pairs = list(zip(submitted, tables, strict=True))
     fits = [[_fitted(variant, one.problem, rows) for one, rows in pairs] for variant in variants()]
-    alone = {one.problem.name: _named([row[i : i + 1] for row in fits], tables[i]) for i, one in enumerate(submitted)}
+    alone = {
+        one.problem.name: _named([row[i : i + 1] for row in fits], tables[i])[0] for i, one in enumerate(submitted)
+    }
     rows = [row for table in tables for row in table]
-    return Diagnosis(rows, _named(fits, rows), alone, submitted)
+    return Diagnosis(rows, *_named(fits, rows), alone, submitted)
 
 
-def _named(fits: Sequence[Sequence[Fit | None]], rows: Sequence[Row]) -> Named:
-    """Causes that are told: sound unless another is surely better, and all that fit alike."""
+def _named(fits: Sequence[Sequence[Fit | None]], rows: Sequence[Row]) -> tuple[Sequence[str], Sequence[Fit]]:
+    """Causes that are told, sound unless another is surely better, and all that fit alike; and fits of all causes."""
     sound = fits[0]
     found = dict[str, list[Fit]]()
     for variant in fits:
@@ -128,8 +127,8 @@ def _named(fits: Sequence[Sequence[Fit | None]], rows: Sequence[Row]) -> Named:
     chance = next(fit for fit in ranked if fit.cause == "sound")
     may = chance in alike and all(abs(row.deviation) <= SOUND + row.allowed / row.scale for row in rows)
     if alike and (chance not in alike or alike[0].evidence - chance.evidence >= (SURE if may else LIKELY)):
-        return Named([fit.cause for fit in alike if alike[0].evidence - fit.evidence < ALIKE and fit != chance], ranked)
-    return Named(["sound" if may else "cannot-tell"], ranked)
+        return [fit.cause for fit in alike if alike[0].evidence - fit.evidence < ALIKE and fit != chance], ranked
+    return ["sound" if may else "cannot-tell"], ranked
 
 
 def _row(problem: Problem, number: Number) -> Row:

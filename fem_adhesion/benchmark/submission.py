@@ -50,7 +50,13 @@ def read(path: Path, problem: Callable[[str], Problem] = named) -> list[Submitte
         with path.open(encoding="utf-8-sig", newline="") as file:
             lines = csv.DictReader(file, skipinitialspace=True, restval="")
             header = [name.strip() for name in lines.fieldnames or ()]
-            rows = [(f"{path}, line {lines.line_num}", _stripped(row)) for row in lines]
+            rows = [
+                (
+                    f"{path}, line {lines.line_num}",
+                    {str(name).strip(): str(text).strip() for name, text in row.items() if name},
+                )
+                for row in lines
+            ]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path} cannot be read ({error}), limit: a CSV file in UTF-8; give one") from error
     form = next((form for form in (NUMBERS, CURVES) if set(form) <= set(header)), NUMBERS)
@@ -65,10 +71,6 @@ def read(path: Path, problem: Callable[[str], Problem] = named) -> list[Submitte
         )
     read_one = _numbers if form == NUMBERS else _curve
     return [read_one(problem(name), found) for name, found in grouped.items()]
-
-
-def _stripped(row: Mapping[str, str]) -> dict[str, str]:
-    return {str(name).strip(): str(text).strip() for name, text in row.items() if name}
 
 
 def _numbers(problem: Problem, rows: Rows) -> Submitted:

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from fem_adhesion.benchmark.causes import REMEDIES
 from fem_adhesion.benchmark.problems import KINDS, Problem
-from fem_adhesion.benchmark.study import Diagnosis, Fit, Row
+from fem_adhesion.benchmark.study import Diagnosis, Row
 from fem_adhesion.benchmark.submission import CURVES, NUMBERS
 from fem_adhesion.common.numbers import digits, with_error
 from fem_adhesion.common.page import data_rows, data_text
@@ -53,21 +53,19 @@ def _table(problem: str, rows: Sequence[Row]) -> Fitted:
 
 def verdict(found: Diagnosis) -> Iterator[str]:
     """Cause, what fits alike, the remedies, and the causes of the problems alone where these differ."""
-    causes, fits = found.whole.causes, {fit.cause: fit for fit in found.whole.fits}
+    causes, fits = found.causes, {fit.cause: fit for fit in found.fits}
     right = [row.digits for row in found.rows if not math.isnan(row.ours)]
     span = f", to {min(right):.1f} to {max(right):.1f} digits" if found.cause == "sound" else ""
     yield f"cause: {' or '.join(causes)}{span}{', which fit alike' if len(causes) > 1 else ''}"
     for cause in causes:
-        fitted = f"{cause}: {_told(fits[cause])}. " if cause in fits and cause != "sound" else ""
+        fitted = ""
+        if (fit := fits.get(cause)) and cause != "sound":
+            sizes = " and ".join(f"{size:.3g}" for size in fit.parameters)
+            fitted = f"{cause}: {f'{fit.what} {sizes}'.strip()}; leaves deviations of {fit.noise:.1g}. "
         yield fitted + REMEDIES[cause]
-    if len({tuple(own.causes) for own in found.problems.values()} | {tuple(causes)}) > 1:
-        alone = [f"{name} {' or '.join(own.causes)}" for name, own in found.problems.items()]
+    if len({tuple(own) for own in found.problems.values()} | {tuple(causes)}) > 1:
+        alone = [f"{name} {' or '.join(own)}" for name, own in found.problems.items()]
         yield f"Each problem alone: {', '.join(alone)}."
-
-
-def _told(fit: Fit) -> str:
-    sizes = " and ".join(f"{size:.3g}" for size in fit.parameters)
-    return f"{fit.what} {sizes}".strip() + f"; leaves deviations of {fit.noise:.1g}"
 
 
 def write(problems: Sequence[Problem], directory: Path) -> None:

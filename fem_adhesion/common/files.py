@@ -200,20 +200,18 @@ def directory_written_aside(path: Path, *, force: bool | None = False) -> Iterat
 
 
 def require_room(directory: Path, *, force: bool | None = False) -> int | None:
-    """Number of files in a directory for results, None if there is none; InputError if there are any and no force."""
-    present = _present(directory)
+    """Number of files in a directory for results, None if there is none; InputError if there are any and no force.
+
+    InputError, too, if it is a file.
+    """
+    if not directory.is_dir():
+        if directory.exists():
+            raise InputError(f"{directory} is a file; give the name of a directory")
+        return None
+    present = len(list(directory.iterdir()))
     if present and not force:
         raise InputError(f"{directory} holds {present} files, limit 0; empty it, choose another or use --force")
     return present
-
-
-def _present(directory: Path) -> int | None:
-    """Number of files in a directory, None if there is none; InputError if it is a file."""
-    if directory.is_dir():
-        return len(list(directory.iterdir()))
-    if directory.exists():
-        raise InputError(f"{directory} is a file; give the name of a directory")
-    return None
 
 
 # Results of a study
@@ -305,7 +303,7 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
     not empty and neither asked to be resumed nor forced.
     """
     with writing(directory, begun=False):
-        present = _present(directory)
+        present = require_room(directory, force=True)
     _require_folder(directory, directory.parent if present is None else directory)
     if present and not force and not (resume and (directory / FOLDER).is_dir()):
         remedy = "it is no study to resume, choose another" if resume else f"choose another or use --resume {directory}"

@@ -27,7 +27,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import count, islice
 from multiprocessing import active_children
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 from urllib.parse import urlsplit
 
 from fem_adhesion.common.files import Plain, Store
@@ -251,28 +251,16 @@ def _cluster(address: str, width: int) -> Pool:
 # The cases of a study
 
 
-@dataclass(frozen=True)
-class Kept(Generic[Item, Result]):
-    """How the results of a study are stored.
-
-    `inputs` are what the result of an item depends on, `name` what the item is called on the screen. `write` makes
-    plain data of a result; `read` takes the item and such data, and raises InputError if they hold no result. `died`
-    makes the result of an item whose worker died.
-    """
-
-    inputs: Callable[[Item], Plain]
-    name: Callable[[Item], str]
-    write: Callable[[Result], Plain]
-    read: Callable[[Item, Plain], Result]
-    died: Callable[[Item, str], Result]
-
-
 def solve_all(
     items: Sequence[Item],
     store: Store | None,
     *,
     work: Callable[..., Any],
-    kept: Kept[Item, Result],
+    inputs: Callable[[Item], Plain],
+    name: Callable[[Item], str],
+    write: Callable[[Result], Plain],
+    read: Callable[[Item, Plain], Result],
+    died: Callable[[Item, str], Result],
     fresh: bool = False,
     jobs: int | None = None,
     dask: str | None = None,
@@ -280,29 +268,30 @@ def solve_all(
 ) -> tuple[Result, ...]:
     """Results of all items in their order: those in the store, and the others, each stored as soon as it is computed.
 
-    The work, a function of a module, computes the result of an item; each item is given once. If `fresh`, all are
-    computed, whatever the store holds. An item whose worker died is not stored: it is tried again when the study is
-    resumed.
+    The work, a function of a module, computes the result of an item; each item is given once. `inputs` are what its
+    result depends on, `name` what it is called on the screen. `write` makes plain data of a result; `read` takes the
+    item and such data, and raises InputError if they hold no result. `died` makes the result of an item whose worker
+    died; that is not stored: it is tried again when the study is resumed. If `fresh`, all are computed, whatever the
+    store holds.
     `jobs` and `dask` are those of `stream`; `progress` is called with the last item's name, how many are done, and of
     how many. InputError before any work if jobs is not positive or the cluster does not answer.
     """
     found: dict[Item, Result] = {}
     for item in items if store and not fresh else ():
-        inputs = kept.inputs(item)
-        if store and (plain := store.get(inputs)) is not None:
+        if store and (plain := store.get(inputs(item))) is not None:
             try:
-                found[item] = kept.read(item, plain)
+                found[item] = read(item, plain)
             except InputError as error:
-                store.distrust(inputs, str(error))
+                store.distrust(inputs(item), str(error))
     todo = [item for item in items if item not in found]
     with closing(stream(work, todo, jobs=jobs, dask=dask)) as results:
         progress("starting", len(found), len(items))
         for item, result in results:
             if isinstance(result, WorkerDied):
-                found[item] = kept.died(item, result.reason)
+                found[item] = died(item, result.reason)
             else:
                 found[item] = result
                 if store:
-                    store.put(kept.inputs(item), kept.write(result))
-            progress(kept.name(item), len(found), len(items))
+                    store.put(inputs(item), write(result))
+            progress(name(item), len(found), len(items))
     return tuple(found[item] for item in items)

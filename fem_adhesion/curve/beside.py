@@ -7,7 +7,7 @@ as 1/s. What all of them share are R dgamma for loads and beta^2/R = mu eps for 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -39,36 +39,33 @@ COMPARED = {
 }
 
 
-@dataclass(frozen=True)
-class EquallyStrong:
-    """Curves by several laws, all as strong as the first, which is what was asked."""
+LawCurves = Sequence[tuple[Law, EquilibriumPath]]
+"""Curves by several laws, all as strong as the first, which is what was asked."""
 
-    curves: Sequence[tuple[Law, EquilibriumPath]]
 
-    def apart(self, subject: str) -> Estimate | None:
-        """Largest relative difference from the first curve in the pull-off force or in the jumps, and its error.
+def apart(curves: LawCurves, subject: str) -> Estimate | None:
+    """Largest relative difference from the first curve in the pull-off force or in the jumps, and its error.
 
-        Of a load in the pull-off force, of an approach in the spacing and range of those of the first curve. None where
-        one law's curve folds and another's does not, or none does.
-        """
-        (_, first), *others = self.curves
-        found = [_difference(first, path, *what) for _, path in others for what in COMPARED[subject]]
-        known = [one for one in found if one is not None]
-        return max(known, key=lambda one: one.value) if known and len(known) == len(found) else None
+    Of a load in the pull-off force, of an approach in the spacing and range of those of the first curve. None where
+    one law's curve folds and another's does not, or none does.
+    """
+    (_, first), *others = curves
+    found = [_difference(first, path, *what) for _, path in others for what in COMPARED[subject]]
+    known = [one for one in found if one is not None]
+    return max(known, key=lambda one: one.value) if known and len(known) == len(found) else None
 
-    @property
-    def told(self) -> str:
-        """Which laws, and how far their curves collapse."""
-        named = "; ".join(_name(law, path) for law, path in self.curves)
-        parts = (f"{_told(self.apart(subject))} in {subject}" for subject in COMPARED)
-        return f"equally strong laws, {named}: curves differ by {', '.join(parts)} at most"
 
-    @property
-    def record(self) -> dict[str, Any]:
-        """The laws with their Tabor parameters, and how far the curves are apart, as plain data."""
-        laws = [{"law": plain(registry.record_of(law)), "tabor": path.tabor} for law, path in self.curves]
-        apart = {subject: plain(self.apart(subject)) for subject in COMPARED}
-        return {"laws": laws, "largest_relative_difference": apart}
+def told(curves: LawCurves) -> str:
+    """Which laws, and how far their curves collapse."""
+    named = "; ".join(_name(law, path) for law, path in curves)
+    parts = (f"{_told(apart(curves, subject))} in {subject}" for subject in COMPARED)
+    return f"equally strong laws, {named}: curves differ by {', '.join(parts)} at most"
+
+
+def record(curves: LawCurves) -> dict[str, Any]:
+    """The laws with their Tabor parameters, and how far the curves are apart, as plain data."""
+    laws = [{"law": plain(registry.record_of(law)), "tabor": path.tabor} for law, path in curves]
+    return {"laws": laws, "largest_relative_difference": {name: plain(apart(curves, name)) for name in COMPARED}}
 
 
 def _difference(first: EquilibriumPath, other: EquilibriumPath, name: str, quantity: str) -> Estimate | None:
@@ -92,7 +89,7 @@ def _name(law: Law, path: EquilibriumPath) -> str:
     return f"{registry.words_of(law)} at tabor {path.tabor:.4g}"
 
 
-def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> EquallyStrong:
+def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> LawCurves:
     """Trace the curves by other laws with the solver of the first, or raise as `require` does, or NotConverged."""
     question, found = curves.question, [(curves.question.scene.law, curves.path)]
     require(question.scene, laws)
@@ -101,7 +98,7 @@ def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> 
         tabor = question.scene.tabor * question.scene.law.strength / law.strength  # the same largest tension
         scene = replace(question.scene, law=law, tabor=tabor)
         found.append((law, trace(replace(question, scene=scene), curves.solver)))
-    return EquallyStrong(found)
+    return found
 
 
 def require(scene: Scene, laws: Sequence[Law]) -> None:
@@ -114,11 +111,11 @@ def require(scene: Scene, laws: Sequence[Law]) -> None:
         raise InputError(f"other_laws = {len(laws)} laws, limit: {len(LOOKS) - 1}; give fewer")
 
 
-def draw(beside: EquallyStrong) -> Figure:
+def draw(curves: LawCurves) -> Figure:
     """Loads against approaches in units that all share, and the laws, each with its largest tension as 1."""
     figure, (left, right) = style.panels(2, 5.6)
     frames = []
-    for (color, dashes), (law, path) in zip(LOOKS, beside.curves, strict=False):
+    for (color, dashes), (law, path) in zip(LOOKS, curves, strict=False):
         line, frame = lines.smooth(path), lines.around_events(path)
         x, (stable, unstable) = line.approach / path.tabor, line.stretches(line.load)
         look = {"color": color, "linewidth": 1.9}
@@ -139,7 +136,7 @@ def draw(beside: EquallyStrong) -> Figure:
         right, r"gap less its equilibrium, $\Delta\gamma/\sigma_\mathrm{max}$", "tension over the largest", legend=None
     )
     right.set_ylim(-1.0, 1.1)
-    parts = [f"{_told(beside.apart(subject))} in {subject}" for subject in COMPARED if beside.apart(subject)]
+    parts = [f"{_told(off)} in {subject}" for subject in COMPARED if (off := apart(curves, subject))]
     left.set_title(f"differ from the first by {', '.join(parts)} at most", loc="left", fontsize=9.5)
     right.set_title("laws of equal work and largest tension", loc="left", fontsize=9.5)
     style.legend_below(figure, [left], 2)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fem_adhesion.common.contact import Contact
-    from fem_adhesion.curve.beside import EquallyStrong
+    from fem_adhesion.curve.beside import LawCurves
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
 
@@ -112,19 +112,21 @@ def run(options: argparse.Namespace) -> int:
     console = console_beside(options.json, options.csv, outputs["stress"])
     terminal.show(curves, console)
     if collapsed:
-        console.print(Prose(collapsed.told))
+        console.print(Prose(beside.told(collapsed)))
     return AGREE
 
 
 def _write(
-    options: argparse.Namespace, curves: Curves, collapsed: EquallyStrong | None, files: Mapping[str, TextIO]
+    options: argparse.Namespace, curves: Curves, collapsed: LawCurves | None, files: Mapping[str, TextIO]
 ) -> None:
     """Write the files that are open, by the names of their options."""
     from fem_adhesion.common.record import write_beside
     from fem_adhesion.curve import record
 
+    if collapsed:
+        from fem_adhesion.curve import beside
     if "json" in files:
-        told = {"beside": collapsed.record} if collapsed else {}
+        told = {"beside": beside.record(collapsed)} if collapsed else {}
         json.dump(record.record(curves) | told, files["json"], indent=1, allow_nan=False)
     if "csv" in files:
         record.write_csv(curves, files["csv"])
@@ -132,7 +134,7 @@ def _write(
         write_beside(files["metadata"], options.csv.name, record.head(curves))
     if "plot" in files:
         from fem_adhesion.common import style
-        from fem_adhesion.curve import beside, figure
+        from fem_adhesion.curve import figure
 
         form = options.plot.suffix[1:]
         style.write(

@@ -11,9 +11,8 @@ from matplotlib.figure import Figure
 from skfem import CellBasis, ElementVector, MeshTri
 
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.common import style
-from fem_adhesion.curve import weak_form
-from fem_adhesion.curve.load import LEGEND, STATES, draw_central_gap, draw_load
+from fem_adhesion.common import lines, style
+from fem_adhesion.curve.load import LEGEND, STATES, draw_central_gap, draw_line, draw_load, draw_states
 from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, WEAK_FORM, Curves
 from fem_adhesion.fields import State, gaps_at, require_fields, state_at
@@ -42,12 +41,25 @@ def draw(curves: Curves) -> Figure:
     The weak form has points and events alone: of it load and central gap are drawn.
     """
     if curves.solver == WEAK_FORM:
-        return weak_form.draw(curves)
+        return _draw_weak_form(curves)
     figure = Figure(figsize=(7.3, 10.0), layout="constrained")
     areas = figure.subplot_mosaic("aa;bc;de", height_ratios=[1.6, 1, 1])
     body = draw_mesh if has_mesh(curves) else draw_central_gap
     for letter, paint in zip("abcde", (draw_load, draw_pressure, draw_gap, draw_spike, body), strict=True):
         areas[letter].set_title(f"({letter}) {paint(areas[letter], curves)}", loc="left", fontsize=9.5)
+    return figure
+
+
+def _draw_weak_form(curves: Curves) -> Figure:
+    """Load and central gap against approach, by stability, with the events."""
+    curve, (figure, axes) = curves.paths[WEAK_FORM], style.panels(2)
+    values = np.column_stack([curve.approach, curve.load, curve.central_gap])
+    line = lines.through(curve.arclength, values, curve.rates, curve.stable)
+    for panel, name in zip(axes, ("load", "central_gap"), strict=True):
+        draw_line(panel, curves, line, name)
+        draw_states(panel, curves, name)
+        style.dress(panel, curves.scales["approach"].label, curves.scales[name].label, legend=None)
+    axes[0].legend(loc="best", **LEGEND)
     return figure
 
 
@@ -98,7 +110,8 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
         line = drawn[np.isclose(places[..., 1], -depth, rtol=1e-9, atol=0)]
         axes.plot(*line[np.argsort(line[:, 0])].T, color=style.BLUE, linewidth=1.3)
     r = np.linspace(0, USUAL.shown * a, 200)
-    sphere = factor * _sphere(state, r)
+    # The rigid sphere over the undeformed surface, r^2/2R + eps - alpha, in beta^2/R.
+    sphere = factor * (state.problem.profile.height(r) + (1 - state.observables[APPROACH]) / scene.tabor)
     if np.isinf(scene.body.size) and sphere[0] < USUAL.highest * a:
         axes.plot(unit.size * r, unit.size * sphere, color="black", linewidth=1.3, label="rigid sphere")
         axes.legend(loc="lower right", **LEGEND)
@@ -116,11 +129,6 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
         return f"mesh at {words}, displacement $\\times {factor * R:.3g}$"
     # A half-space has no length of its own: the title says what the unit is drawn as.
     return f"mesh at {words}, $\\beta^2/R$ drawn as {factor:.2g} $\\beta$"
-
-
-def _sphere(state: State, r: Array) -> Array:
-    """Height of the rigid sphere over the undeformed surface, r^2/2R + eps - alpha, in beta^2/R."""
-    return np.asarray(state.problem.profile.height(r) + (1 - state.observables[APPROACH]) / state.scene.tabor)
 
 
 Along = Mapping[str, Array]

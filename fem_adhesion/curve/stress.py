@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -24,7 +24,7 @@ from fem_adhesion.fields import FIELDS, State, state_at
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.errors import InputError
 from halfspace.scaling import Units
-from halfspace.values import Array, Index, Valued
+from halfspace.values import Array, Index
 
 COMPONENTS = ("rr", "zz", "hoop", "rz")
 LINES = ("axis", "surface")  # where points are taken without a file
@@ -35,26 +35,15 @@ PAPER: Mapping[str, tuple[float, str]] = {
 }
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Stresses(Valued):
-    """Stress at points of a body at an event, tension positive.
-
-    Radii and depths (n,) are in beta, the components (4, n) and the errors of all, (n,), in E* beta/R.
-    """
-
-    radii: Array
-    depths: Array
-    components: Array
-    errors: Array
-
-
 Points = tuple[Array, Array]
 """Radii and depths in beta, (n,) each."""
 
 
-def stresses(curves: Curves, event: str, where: str | Points) -> Stresses:
+def stresses(curves: Curves, event: str, where: str | Points) -> dict[str, Array]:
     """Solve for the stress at an event of the first curve, along one of `LINES` or at points.
 
+    Each an array (n,), are ``r`` and ``depth`` of the points in beta, and the components ``stress_rr`` ..., tension
+    positive, and the error of all, ``stress_error``, in E* beta/R.
     InputError if the curve does not have the event, or a point lies outside what is meshed of the body.
     """
     located, scene = curves.path.stages[-1].get(event), curves.question.scene
@@ -65,7 +54,8 @@ def stresses(curves: Curves, event: str, where: str | Points) -> Stresses:
     )
     radii, depths = _along(fine, where) if isinstance(where, str) else where
     values, others = (stress_at(state, radii, depths) for state in (fine, coarse))
-    return Stresses(radii, depths, values, np.abs(values - others).max(axis=0))
+    parts = dict(zip(COMPONENTS, values, strict=True)) | {"error": np.abs(values - others).max(axis=0)}
+    return {"r": radii, "depth": depths, **{f"stress_{name}": part for name, part in parts.items()}}
 
 
 def stress_at(state: State, radii: Array, depths: Array) -> Array:
@@ -144,18 +134,16 @@ def places_of(where: str, units: Units | None) -> str | Points:
     return radii, depths
 
 
-def write(found: Stresses, units: Units | None, file: TextIO) -> None:
-    """Write a table of points, components and errors, in the units of the paper and, if the material is known, SI."""
+def write(found: Mapping[str, Array], units: Units | None, file: TextIO) -> None:
+    """Write what `stresses` found as a table, in the units of the paper and, if the material is known, SI."""
     tables = [PAPER]
     if units:
         tables.append({"r": units.si("radius"), "depth": units.si("radius"), "stress": units.si("pressure")})
     columns: dict[str, Array] = {}
     for table in tables:
-        for name, values in (("r", found.radii), ("depth", found.depths)):
-            columns[column(name, table[name][1])] = values * table[name][0]
-        size, unit = table["stress"]
-        for name, values in zip((*COMPONENTS, "error"), (*found.components, found.errors), strict=True):
-            columns[column(f"stress_{name}", unit)] = values * size
+        for name, values in found.items():
+            size, unit = table[name.partition("_")[0]]
+            columns[column(name, unit)] = values * size
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(columns)
     writer.writerows(np.column_stack(list(columns.values())).tolist())

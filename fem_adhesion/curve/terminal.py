@@ -53,7 +53,11 @@ def table(curves: Curves) -> Fitted:
         Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts)
         for name, texts in zip(OBSERVABLES, numbers, strict=True)
     ]
-    return Fitted([*states, *columns], list(_title(curves)))
+    scene, si = curves.question.scene, curves.question.units
+    title = [*scene.words, *(sizes_told(si) if si else ())]
+    if si and scene.law == LENNARD_JONES:
+        title.append(f"Hamaker constant {engineering(si.hamaker, 'J')}")
+    return Fitted([*states, *columns], title)
 
 
 def _rows(curves: Curves) -> Iterator[tuple[str, str, Event, Sequence[str]]]:
@@ -84,16 +88,6 @@ def _cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> I
             yield "0"
         else:
             yield with_error(found, units[name].size, USUAL.most_digits) + (MISSED if name in missed else "")
-
-
-def _title(curves: Curves) -> Iterator[str]:
-    """What was solved."""
-    scene, units = curves.question.scene, curves.question.units
-    yield from scene.words
-    if units:
-        yield from sizes_told(units)
-    if units and scene.law == LENNARD_JONES:
-        yield f"Hamaker constant {engineering(units.hamaker, 'J')}"
 
 
 def notes(curves: Curves) -> Iterator[str]:

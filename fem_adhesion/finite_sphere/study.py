@@ -15,7 +15,7 @@ from typing import Any
 
 from fem_adhesion.common.facts import code_digest
 from fem_adhesion.common.files import Store
-from fem_adhesion.common.jobs import Kept, solve_all
+from fem_adhesion.common.jobs import solve_all
 from fem_adhesion.common.numbers import counted
 from fem_adhesion.finite_sphere.cases import MODELS, Record, SphereCase, case_of, compute, from_plain, to_plain
 from fem_adhesion.finite_sphere.table import DeviationRow, reference_poisson, rows
@@ -139,11 +139,18 @@ def code() -> str:
     return code_digest(compute.__module__)
 
 
-KEPT = Kept(asdict, lambda case: case.name, to_plain, from_plain, lambda case, why: Record(case, "died", {}, why))
-
-
 def run(
     cases: Sequence[SphereCase], store: Store | None, *, work: Callable[[SphereCase], Record] = compute, **how: Any
 ) -> tuple[Record, ...]:
     """Records of cases of a plan, by the work: `fem_adhesion.common.jobs.solve_all`, whose keywords are `how`."""
-    return solve_all(cases, store, work=work, kept=KEPT, **how)
+    return solve_all(
+        cases,
+        store,
+        work=work,
+        inputs=asdict,
+        name=lambda case: case.name,
+        write=to_plain,
+        read=from_plain,
+        died=lambda case, why: Record(case, "died", {}, why),
+        **how,
+    )

@@ -17,13 +17,13 @@ from typing import IO, Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 from rich.console import Group
 
 from fem_adhesion.common import style
 from fem_adhesion.common.facts import code_digest, plain
 from fem_adhesion.common.files import Plain, Store
-from fem_adhesion.common.jobs import Kept, solve_all
+from fem_adhesion.common.jobs import solve_all
 from fem_adhesion.common.numbers import counted
 from fem_adhesion.common.record import column
 from fem_adhesion.common.terminal import Column, Fitted, Prose
@@ -95,14 +95,17 @@ def run(
         named = {name: plain(record_of(value)) for name, value in {**reading, **asked}.items()}
         return {"file": _digest(source.path, source.path.stat().st_mtime_ns), "number": source.number, **named}
 
-    kept = Kept[Source, Row](
-        inputs,
-        str,
-        dict,
-        lambda source, row: {**row, **source.named},  # the store knows the curve by what is in its file
-        lambda source, reason: source.named | {"reason": reason},
+    return solve_all(
+        curves,
+        store,
+        work=partial(work, reading=reading, **asked),
+        inputs=inputs,
+        name=str,
+        write=dict,
+        read=lambda source, row: {**row, **source.named},  # the store knows the curve by what is in its file
+        died=lambda source, reason: source.named | {"reason": reason},
+        **how,
     )
-    return solve_all(curves, store, work=partial(work, reading=reading, **asked), kept=kept, **how)
 
 
 def code() -> str:
@@ -226,7 +229,7 @@ def draw(rows: Sequence[Row]) -> Figure:
         bars = {"fmt": ".", "color": style.BLUE, "linewidth": 0.8, "label": "intervals at 95 %"}
         axes.errorbar(numbers, heights, xerr=widths, **bars)
         style.dress(axes, name.replace("_", " "), "curves", legend=None)
-        axes.xaxis.set_major_formatter(EngFormatter(given[0].unit))
+        style.engineering_ticks(axes.xaxis, given[0].unit)
         axes.xaxis.set_major_locator(MaxNLocator(3))
         axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     style.legend_below(figure, panels, 2)

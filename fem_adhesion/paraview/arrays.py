@@ -74,7 +74,7 @@ def inside(state: State, cut: Cut, scale: float) -> Named:
 def turned(arrays: Named, solid: Solid) -> Named:
     """Arrays on the nodes of the solid, vectors and the tensor `stress` in Cartesian components."""
     solid_arrays = {
-        name: solid.vectors(values) if name in VECTORS else solid.scalars(values) for name, values in arrays.items()
+        name: solid.vectors(values) if name in VECTORS else values[solid.meridian] for name, values in arrays.items()
     }
     return solid_arrays | {"stress": solid.tensors(arrays["stress_cylindrical"])}
 

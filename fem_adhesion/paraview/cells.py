@@ -198,10 +198,6 @@ class Solid(Valued):
     points: Array
     cells: dict[int, Index]
 
-    def scalars(self, values: Array) -> Array:
-        """Values (nodes, ...) of fields (section, ...) that do not turn with the angle."""
-        return np.asarray(values[self.meridian])
-
     def vectors(self, values: Array) -> Array:
         """Cartesian components (nodes, 3) of vectors (section, 3) given where the angle is zero."""
         c, s = np.cos(self.angles), np.sin(self.angles)

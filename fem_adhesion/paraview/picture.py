@@ -7,8 +7,7 @@ flat as its wall where they touch, and the rigid sphere as round as the dent it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from ctypes.util import find_library
 from dataclasses import dataclass
 from importlib import import_module
@@ -153,7 +152,7 @@ LINES = {"undeformed": ("#009E73", 4), "deformed": ("black", 6), "wall": ("#5050
 def solid_image(state: State, view: View, size: tuple[int, int]) -> Pixels:
     """Picture (height, width, 3) of the solid and the wall, without words; InputError as by `require_drawing`."""
     pyvista = require_drawing()
-    with _quiet():
+    with pyvista.vtk_verbosity("error"):  # VTK warns that there is no display, for which it has a remedy itself
         plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
         plotter.add_light(pyvista.Light(position=LOOK.light, light_type="camera light"))
         plotter.set_background("white")
@@ -175,7 +174,7 @@ def require_drawing() -> Any:
     from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
     import_module("vtkmodules.vtkRenderingOpenGL2")  # until then VTK's window is an abstract one
-    with _quiet():
+    with pyvista.vtk_verbosity("error"):
         last_resort = vtkRenderWindow().GetClassName() == "vtkOSOpenGLRenderWindow"
     if last_resort and find_library(OSMESA) is None:
         remedy = "apt-get install libegl1 libgl1-mesa-dri"
@@ -183,23 +182,13 @@ def require_drawing() -> Any:
     return pyvista
 
 
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep VTK's warning that there is no display, for which it has a remedy itself, from the terminal."""
-    from vtkmodules.vtkCommonCore import vtkLogger
-
-    before = vtkLogger.GetCurrentVerbosityCutoff()
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    try:
-        yield
-    finally:
-        vtkLogger.SetStderrVerbosity(before)
-
-
 def _add_body(pyvista: Any, plotter: Any, state: State, view: View) -> None:
     """The cut in its true colours, and the skin lit, so that its shape is seen."""
     shown = section(state, view)
-    plane = _plane(pyvista, shown, view)
+    cells = np.insert(shown.cells, 0, shown.cells.shape[1], axis=1)
+    whole = pyvista.PolyData(in_plane(*shown.points), faces=cells.ravel())
+    whole.point_data["stress"] = shown.stress
+    plane = _in_view(whole, view)
     colours = {"scalars": "stress", "cmap": COLOURS, "clim": (-view.limit, view.limit), "show_scalar_bar": False}
     outline = plane.extract_feature_edges(feature_edges=False, manifold_edges=False, non_manifold_edges=False)
     for angle in (0.0, LOOK.open):
@@ -210,14 +199,6 @@ def _add_body(pyvista: Any, plotter: Any, state: State, view: View) -> None:
             plotter.add_mesh(seen.rotate_z(angle), color=OUTLINE, line_width=3, lighting=False)
     light = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "smooth_shading": True, "split_sharp_edges": True}
     plotter.add_mesh(_turned(plane), **colours, **light)
-
-
-def _plane(pyvista: Any, shown: MeridianSection, view: View) -> Any:
-    """The section in the plane y = 0, as far as it is in view."""
-    cells = np.insert(shown.cells, 0, shown.cells.shape[1], axis=1)
-    plane = pyvista.PolyData(in_plane(*shown.points), faces=cells.ravel())
-    plane.point_data["stress"] = shown.stress
-    return _in_view(plane, view)
 
 
 def _in_view(plane: Any, view: View) -> Any:

@@ -64,7 +64,13 @@ def write_states(
     require_same_scene(held, units)
     scale = magnification_for(held)
     with writing(directory):
-        files = [_write_state(pyvista, aside, k, state, scale, units, revolve) for k, state in enumerate(held)]
+        files = list[dict[str, str]]()  # names by kind, of each state
+        for number, state in enumerate(held):
+            files.append({})
+            for kind, suffix, grid in _grids(pyvista, state, scale, units, revolve):
+                _annotate(grid, numbers(state, scale, units))
+                files[-1][kind] = f"{kind}_{number:04d}.{suffix}"
+                _save(grid, aside / files[-1][kind])
         series = [_write_series(aside, kind, files, held) for kind in files[0]]
         return [*series, _write_notes(aside, files, held), *(name for each in files for name in each.values())]
 
@@ -78,18 +84,6 @@ def require_pyvista() -> Any:
             "pyvista is not installed, which writes VTK files; pip install '.[view]' in a clone"
         ) from error
     return pyvista
-
-
-def _write_state(
-    pyvista: Any, folder: Path, number: int, state: State, scale: float, units: Units | None, revolve: float | None
-) -> dict[str, str]:
-    """Write a state's files and return their names by kind."""
-    files = {}
-    for kind, suffix, grid in _grids(pyvista, state, scale, units, revolve):
-        _annotate(grid, numbers(state, scale, units))
-        files[kind] = f"{kind}_{number:04d}.{suffix}"
-        _save(grid, folder / files[kind])
-    return files
 
 
 def _save(grid: Any, file: Path) -> None:

@@ -18,6 +18,7 @@ from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, Elemen
 
 import halfspace
 from fem_adhesion import convergence
+from fem_adhesion.bodies.body import Body
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.common import relaxation
 from fem_adhesion.common.page import data_text
@@ -89,9 +90,12 @@ class Method:
         return self.steps[: self.quick] if quick else self.steps
 
 
-def trace_elements(tabor: float, rtol: float) -> EquilibriumPath:
-    """Curve of a half-space by finite elements with error control."""
-    return convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=rtol)
+HALF_SPACE_BODY = HalfSpace(poisson=POISSON)
+
+
+def trace_elements(tabor: float, rtol: float, body: Body = HALF_SPACE_BODY) -> EquilibriumPath:
+    """Curve of a body, a half-space unless given, by finite elements with error control."""
+    return convergence.trace(Scene(tabor, body), rtol=rtol)
 
 
 def estimates(path: EquilibriumPath) -> dict[str, Estimate]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from fem_adhesion.common.facts import code_digest, plain
 from fem_adhesion.common.files import Plain, Store
-from fem_adhesion.common.jobs import Kept, solve_all
+from fem_adhesion.common.jobs import solve_all
 from fem_adhesion.common.record import UNITS, column
 from fem_adhesion.registry import record_of
 from halfspace import atlas
@@ -79,8 +79,17 @@ def run(
     def write(curve: Summary) -> Plain:
         return {name: plain(value) if isinstance(value, dict) else value for name, value in asdict(curve).items()}
 
-    kept = Kept(inputs, "tabor {:g}".format, write, _from_plain, Summary.failed)
-    return solve_all(tabors, store, work=partial(work, **asked), kept=kept, **how)
+    return solve_all(
+        tabors,
+        store,
+        work=partial(work, **asked),
+        inputs=inputs,
+        name="tabor {:g}".format,
+        write=write,
+        read=_from_plain,
+        died=Summary.failed,
+        **how,
+    )
 
 
 def _from_plain(_: float, kept: Mapping[str, Any]) -> Summary:

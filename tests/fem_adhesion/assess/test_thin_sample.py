@@ -14,7 +14,7 @@ from scipy.optimize import brentq, minimize_scalar
 import halfspace
 from fem_adhesion import cli
 from fem_adhesion.assess import study
-from fem_adhesion.assess.predictions import QUANTITIES, WORDS, computed, large_tabor, large_tabor_on, relative
+from fem_adhesion.assess.predictions import QUANTITIES, WORDS, computed, large_tabor, relative
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.terminal import enough_table, indentations_table, report
 from fem_adhesion.assess.thin_sample import hertz_until
@@ -204,7 +204,7 @@ def test_a_soft_film_has_jumps_and_loss_within_errors():
     path = halfspace.trace(300.0, body=layer, rtol=1e-4, to_load=2.0)
     for stiffness in (math.inf, 0.006):
         truth = computed("truth", path, stiffness, units)
-        theory = large_tabor_on(layer, 300.0, stiffness, units)
+        theory = large_tabor(300.0, stiffness, units, layer)
         assert set(theory.values) == set(QUANTITIES)
         for name, value in theory.values.items():
             assert abs(value.value - truth.values[name].value) < value.error + truth.values[name].error, name

@@ -30,26 +30,26 @@ def drawn(collapsed):
 
 def test_laws_are_as_strong_in_one_unit(collapsed):
     """The largest tension s dgamma/eps over E*, at equal R and dgamma: s^3 mu^3 R/(dgamma ...) is the same."""
-    for law, path in collapsed.curves:
+    for law, path in collapsed:
         assert law.strength * path.tabor == pytest.approx(2 * LENNARD_JONES.strength, rel=1e-12)
-    assert [law for law, _ in collapsed.curves] == [LENNARD_JONES, *LAWS]
+    assert [law for law, _ in collapsed] == [LENNARD_JONES, *LAWS]
 
 
 def test_the_numbers_are_those_of_the_curves(collapsed):
-    first, *others = (path for _, path in collapsed.curves)
+    first, *others = (path for _, path in collapsed)
     size = abs(first.events["pull_off"].load)
     pull_off = max(abs(path.events["pull_off"].load - first.events["pull_off"].load) for path in others) / size
-    assert collapsed.apart("pull-off").value == pytest.approx(pull_off, rel=1e-12)
-    assert 0 < collapsed.apart("jumps").error < 1e-3
-    assert f"{100 * pull_off:.3g} +- " in collapsed.told
-    assert "morse k 3 at tabor" in collapsed.told
+    assert beside.apart(collapsed, "pull-off").value == pytest.approx(pull_off, rel=1e-12)
+    assert 0 < beside.apart(collapsed, "jumps").error < 1e-3
+    assert f"{100 * pull_off:.3g} +- " in beside.told(collapsed)
+    assert "morse k 3 at tabor" in beside.told(collapsed)
 
 
 @pytest.mark.parametrize("name", ["jump_on", "jump_off"])
 @pytest.mark.parametrize("quantity", ["approach", "load"])
 def test_jumps_differ_by_their_largest_part_of_load_or_range(collapsed, name, quantity):
     """The first curve beside itself, moved in one number alone, at a Tabor parameter that scales its approaches."""
-    law, path = collapsed.curves[0]
+    law, path = collapsed[0]
     event, events = path.events[name], path.events
     size = {"approach": 1 + np.ptp([e.approach for e in events.values()]), "load": abs(events["pull_off"].load)}
     scaled = {
@@ -58,17 +58,15 @@ def test_jumps_differ_by_their_largest_part_of_load_or_range(collapsed, name, qu
     moved, error = 0.01 * size[quantity], 2 * getattr(event, f"{quantity}_error") / size[quantity]
     unit = 1.5 if quantity == "approach" else 1.0
     scaled[name] = replace(scaled[name], **{quantity: unit * (getattr(event, quantity) + moved)})
-    found = beside.EquallyStrong([(law, path), (law, replace(path, tabor=1.5 * path.tabor, events=scaled))])
-    assert found.apart("jumps").value == pytest.approx(0.01, rel=1e-9)
-    assert found.apart("jumps").error == pytest.approx(error, rel=1e-6)
+    found = [(law, path), (law, replace(path, tabor=1.5 * path.tabor, events=scaled))]
+    assert beside.apart(found, "jumps").value == pytest.approx(0.01, rel=1e-9)
+    assert beside.apart(found, "jumps").error == pytest.approx(error, rel=1e-6)
 
 
 def test_labels_tell_the_lines_that_are_drawn(collapsed, drawn):
     left, right = drawn.axes
     lines = {line.get_label(): line for line in left.get_lines()}
-    for (law, path), line in zip(
-        collapsed.curves, (lines[beside._name(*one)] for one in collapsed.curves), strict=True
-    ):
+    for (law, path), line in zip(collapsed, (lines[beside._name(*one)] for one in collapsed), strict=True):
         x, y = line.get_data()
         seen = np.isfinite(y)
         rates = path.load[path.stable], path.approach[path.stable] / path.tabor
@@ -85,16 +83,16 @@ def test_labels_tell_the_lines_that_are_drawn(collapsed, drawn):
         assert height.max() == pytest.approx(1, abs=1e-3)
         beyond = -float(law.energy(gap[-1] / law.strength, 1.0))
         assert np.trapezoid(height[gap >= 0], gap[gap >= 0]) == pytest.approx(1 - beyond, abs=2e-3)
-    assert f"{100 * collapsed.apart('pull-off').value:.3g} +- " in left.get_title(loc="left")
+    assert f"{100 * beside.apart(collapsed, 'pull-off').value:.3g} +- " in left.get_title(loc="left")
 
 
 def test_jumps_are_compared_where_all_laws_fold(collapsed):
-    first, (law, path), _ = collapsed.curves
+    first, (law, path), _ = collapsed
     smooth = replace(path, events={name: path.events[name] for name in ("pull_off", "zero_load")})
-    found = beside.EquallyStrong([first, (law, smooth)])
-    assert found.apart("jumps") is None
-    assert found.apart("pull-off").value > 0
-    assert "not all fold" in found.told
+    found = [first, (law, smooth)]
+    assert beside.apart(found, "jumps") is None
+    assert beside.apart(found, "pull-off").value > 0
+    assert "not all fold" in beside.told(found)
 
 
 def test_a_body_with_a_length_is_refused_before_any_work():
@@ -105,6 +103,6 @@ def test_a_body_with_a_length_is_refused_before_any_work():
 
 
 def test_the_record_is_json(collapsed):
-    data = json.loads(json.dumps(collapsed.record, allow_nan=False))
-    assert [one["tabor"] for one in data["laws"]] == [path.tabor for _, path in collapsed.curves]
-    assert data["largest_relative_difference"]["jumps"]["value"] == collapsed.apart("jumps").value
+    data = json.loads(json.dumps(beside.record(collapsed), allow_nan=False))
+    assert [one["tabor"] for one in data["laws"]] == [path.tabor for _, path in collapsed]
+    assert data["largest_relative_difference"]["jumps"]["value"] == beside.apart(collapsed, "jumps").value
