@@ -8,11 +8,10 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Literal
 
-import numpy as np
-
 from fem_adhesion.assess import theories
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.theories import estimated, loop
+from fem_adhesion.common.known import known
 from halfspace import atlas
 from halfspace.elastic.layers import Layers
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -97,13 +96,7 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
 
     NotConverged if a jump or a landing cannot be solved for.
     """
-    tension, free = path.events["pull_off"], path.events["zero_load"]
-    found = {
-        "pull_off_force": Estimate(-tension.load, tension.load_error),
-        "pull_off_radius": tension.estimate("contact_radius"),
-        "zero_load_radius": free.estimate("contact_radius"),
-    }
-    round_trip = cycle(path, stiffness)
+    found, round_trip = _at_rest(path.events), cycle(path, stiffness)
     if round_trip:
         for name, at in (("jump_on", round_trip.jump_on.take_off), ("jump_off", round_trip.jump_off.take_off)):
             found |= _take_off(name, at.estimate("approach"), at.estimate("load"), stiffness)
@@ -128,25 +121,18 @@ def read_atlas(
     The errors with a cantilever are those of the samples, see `closed`, and of the atlas' curve, times `USUAL.slack`: a
     turn of the base moves by what the curve's derivatives err. Beyond the curve the second order of the bulge counts.
     """
-    pull_off, zero_load, *jumps = (
-        getattr(atlas, name)(np.array(tabors)) for name in ("pull_off", "zero_load", "jump_on", "jump_off")
-    )
-    for i, (tabor, stiffness, unit) in enumerate(zip(tabors, stiffnesses, units, strict=True)):
-        values = dict[str, Quantity]()
-        found = {
-            "pull_off_force": _at(pull_off, "load", i) * -1,
-            "pull_off_radius": _at(pull_off, "contact_radius", i),
-            "zero_load_radius": _at(zero_load, "contact_radius", i),
-        }
+    for (events, _, lost), tabor, stiffness, unit in zip(known(tabors), tabors, stiffnesses, units, strict=True):
+        values, found = dict[str, Quantity](), _at_rest(events)
         if math.isinf(stiffness):
-            for name, jump in zip(("jump_on", "jump_off"), jumps, strict=True):
-                found |= _take_off(name, _at(jump.take_off, "approach", i), _at(jump.take_off, "load", i), stiffness)
-            found["energy_lost"] = _at(jumps[0], "energy", i) + _at(jumps[1], "energy", i)
+            for name in ("jump_on", "jump_off"):
+                if at := events.get(name):
+                    found |= _take_off(name, at.estimate("approach"), at.estimate("load"), stiffness)
+            found |= {"energy_lost": lost} if "jump_on" in events else {}
         else:
             read = closed("atlas", partial(theories.half_space, number=number), tabor, stiffness, unit).values
             curve = atlas.curve(tabor)
             slack = Estimate(0.0, USUAL.slack * float(curve.errors[:2].max(axis=1).sum()))
-            errors = dict.fromkeys(read.keys() - found.keys(), slack)
+            errors = {name: slack for name in read if name not in found}
             end, bulge = theories.far_end(curve)
             on = read["jump_on_separation"].value / unit.approach if "jump_on_separation" in read else 0.0
             if on > end:  # by the first order of the bulge
@@ -156,9 +142,13 @@ def read_atlas(
         yield values | _in_si(found, unit)
 
 
-def _at(states: object, name: str, i: int) -> Estimate:
-    """A number of the atlas with its error."""
-    return Estimate(float(getattr(states, name)[i]), float(getattr(states, f"{name}_error")[i]))
+def _at_rest(events: Mapping[str, Event]) -> dict[str, Estimate]:
+    """Numbers that no cantilever changes."""
+    return {
+        "pull_off_force": events["pull_off"].estimate("load") * -1,
+        "pull_off_radius": events["pull_off"].estimate("contact_radius"),
+        "zero_load_radius": events["zero_load"].estimate("contact_radius"),
+    }
 
 
 def closed(

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from fem_adhesion.common.known import known
 from fem_adhesion.common.words import part_in
 from fem_adhesion.convergence import trace
 from fem_adhesion.registry import PARTS
@@ -22,7 +23,7 @@ from fem_adhesion.scene import HALF_SPACE, Scene
 from halfspace import atlas
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import EVENTS
+from halfspace.equilibrium.events import EVENTS, Event, usual
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import Units
@@ -70,9 +71,7 @@ class Problem:
         """Our value of each quantity that the curve has."""
         if self.in_atlas:
             return by_atlas(self.scene.tabor)
-        events = [(name, event) for name, event in self._path.events.items() if name in EVENTS]
-        found = {f"{name}_{kind}": event.estimate(kind) for name, event in events for kind in OBSERVABLES}
-        return _known(found | {"energy": self._path.energy})
+        return _values(usual(self._path.events), energy=self._path.energy)
 
     @cached_property
     def curve(self) -> Array:
@@ -103,20 +102,15 @@ def named(name: str) -> Problem:
 @lru_cache(maxsize=1024)  # that a parameter is tried at, for several causes
 def by_atlas(tabor: float) -> dict[str, Estimate]:
     """Values of a paraboloid on the half-space under the 3-9 law; none of jumps that do not exist."""
-    on, off = atlas.jump_on(tabor), atlas.jump_off(tabor)
-    states = (atlas.pull_off(tabor), on.take_off, off.take_off, atlas.zero_load(tabor), on.landing, off.landing)
-    found = {
-        f"{name}_{kind}": Estimate(float(getattr(state, kind)), float(getattr(state, f"{kind}_error")))
-        for name, state in zip((*EVENTS, *LANDINGS), states, strict=True)
-        for kind in OBSERVABLES
-    }
-    for name, energy in (("energy", atlas.energy_released(tabor)), ("energy_lost", atlas.energy_lost(tabor))):
-        found[name] = Estimate(float(energy.energy), float(energy.energy_error))
-    return _known(found)
+    ((events, released, lost),) = known([tabor])
+    return _values(events, energy=released, energy_lost=lost)
 
 
-def _known(values: Mapping[str, Estimate]) -> dict[str, Estimate]:
-    return {name: values[name] for name in KINDS if name in values and not math.isnan(values[name].value)}
+def _values(events: Mapping[str, Event], **energies: Estimate) -> dict[str, Estimate]:
+    """Numbers of states and energies in the order of `KINDS`, those that exist."""
+    found = {f"{name}_{kind}": event.estimate(kind) for name, event in events.items() for kind in OBSERVABLES}
+    found |= energies
+    return {name: found[name] for name in KINDS if name in found and not math.isnan(found[name].value)}
 
 
 def events_along(curve: Array) -> dict[str, Array]:

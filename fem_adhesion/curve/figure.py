@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from skfem import CellBasis, ElementVector, MeshTri
+from skfem import MeshTri
 
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common import lines, style
 from fem_adhesion.curve.load import LEGEND, STATES, draw_central_gap, draw_line, draw_load, draw_states
 from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, WEAK_FORM, Curves
+from fem_adhesion.elasticity.stress import positions, sampled
 from fem_adhesion.fields import State, gaps_at, require_fields, state_at
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -80,16 +81,9 @@ def outlines(state: State, reach: float) -> tuple[Array, Array]:
     t = np.linspace(0, 1, 9)[:-1, None]  # points on a side
     sides = zip(corners, np.roll(corners, -1, axis=0), strict=True)
     round_cell = np.concatenate([a + t * (b - a) for a, b in sides]).T
-    basis = CellBasis(
-        mesh,
-        ElementVector(space.element),
-        elements=np.flatnonzero(nearest <= reach),
-        quadrature=(round_cell, np.ones(round_cell.shape[1])),
-        dofs=space.dofs,
-        disable_doflocs=True,
-    )
-    places, moved = basis.global_coordinates(), basis.interpolate(state.displacement)
-    return np.asarray(places).transpose(1, 2, 0), np.asarray(moved).transpose(1, 2, 0)
+    near = np.flatnonzero(nearest <= reach)
+    places, moved = np.array(positions(space, round_cell)), sampled(space, state.components, round_cell)
+    return places[:, near].transpose(1, 2, 0), moved[:, near].transpose(1, 2, 0)
 
 
 def draw_mesh(axes: Any, curves: Curves) -> str:
@@ -110,8 +104,7 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
         line = drawn[np.isclose(places[..., 1], -depth, rtol=1e-9, atol=0)]
         axes.plot(*line[np.argsort(line[:, 0])].T, color=style.BLUE, linewidth=1.3)
     r = np.linspace(0, USUAL.shown * a, 200)
-    # The rigid sphere over the undeformed surface, r^2/2R + eps - alpha, in beta^2/R.
-    sphere = factor * (state.problem.profile.height(r) + (1 - state.observables[APPROACH]) / scene.tabor)
+    sphere = factor * _sphere(state, r)
     if np.isinf(scene.body.size) and sphere[0] < USUAL.highest * a:
         axes.plot(unit.size * r, unit.size * sphere, color="black", linewidth=1.3, label="rigid sphere")
         axes.legend(loc="lower right", **LEGEND)
@@ -129,6 +122,11 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
         return f"mesh at {words}, displacement $\\times {factor * R:.3g}$"
     # A half-space has no length of its own: the title says what the unit is drawn as.
     return f"mesh at {words}, $\\beta^2/R$ drawn as {factor:.2g} $\\beta$"
+
+
+def _sphere(state: State, r: Array) -> Array:
+    """Height of the rigid sphere over the undeformed surface, r^2/2R + eps - alpha, in beta^2/R."""
+    return np.asarray(state.problem.profile.height(r) + (1 - state.observables[APPROACH]) / state.scene.tabor)
 
 
 Along = Mapping[str, Array]

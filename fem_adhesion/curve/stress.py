@@ -53,16 +53,16 @@ def stresses(curves: Curves, event: str, where: str | Points) -> dict[str, Array
         state_at(scene, located.problem, located.point, how=replace(FIELDS, degree=FIELDS.degree - k)) for k in (1, 0)
     )
     radii, depths = _along(fine, where) if isinstance(where, str) else where
-    values, others = (stress_at(state, radii, depths) for state in (fine, coarse))
+    values, others = (values_at(state, state.stress, radii, depths) for state in (fine, coarse))
     parts = dict(zip(COMPONENTS, values, strict=True)) | {"error": np.abs(values - others).max(axis=0)}
     return {"r": radii, "depth": depths, **{f"stress_{name}": part for name, part in parts.items()}}
 
 
-def stress_at(state: State, radii: Array, depths: Array) -> Array:
-    """Stress (4, n) in E* beta/R at points (n,) of a body, by radius and depth under z = 0 in beta."""
+def values_at(state: State, coefficients: Array, radii: Array, depths: Array) -> Array:
+    """Values (m, n) of fields given by coefficients (m, functions), at points by radius and depth (n,) in beta."""
     space = state.space
     cells, places = located_in(space, np.array([radii, -depths]))
-    own = state.stress[:, space.scalar_dofs.element_dofs[:, cells]]
+    own = coefficients[:, space.scalar_dofs.element_dofs[:, cells]]
     return np.asarray(np.einsum("kin,in->kn", own, reference_functions(space.element, places)[0]))
 
 

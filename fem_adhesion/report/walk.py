@@ -6,18 +6,16 @@ Made for looking: profiles and lines inside the body on fixed grids, small enoug
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 
 from fem_adhesion.bodies.body import Discretisation
+from fem_adhesion.common.facts import plain
 from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.common.lines import UNSTABLE, smooth
 from fem_adhesion.curve.solve import Curves
-from fem_adhesion.elasticity.stress import positions, sampled
+from fem_adhesion.curve.stress import values_at
 from fem_adhesion.fields import State, half_space_beside, states_along
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -96,16 +94,9 @@ def _station(state: State, radii: Array, places: Array) -> Station:
 
 def _lines(state: State, places: Array) -> Array:
     """Upward displacement in eps on the lines inside the body."""
-    fine = np.stack(np.meshgrid(*2 * [np.linspace(0, 1, 7)], indexing="ij")).reshape(2, -1)  # of each cell
-    r, z = (x.ravel() for x in positions(state.space, fine))
-    rise = state.scene.tabor * sampled(state.space, state.components[1], fine).ravel()
-    near = (r < 2 * places[-1]) & (-z < 2 * LINES[-1] + places[-1])
-    points, values = np.stack([r, z], axis=1)[near], rise[near]
-    wanted = np.stack(np.meshgrid(places, -np.array(LINES)), axis=-1).reshape(-1, 2)
-    found = LinearNDInterpolator(points, values)(wanted)
-    outside = np.isnan(found)  # by rounding, on the surface and the axis
-    found[outside] = NearestNDInterpolator(points, values)(wanted[outside])
-    return np.asarray(found.reshape(len(LINES), places.size))
+    radii, depths = (x.ravel() for x in np.meshgrid(places, LINES))
+    rise = state.scene.tabor * values_at(state, state.components[1:], radii, depths)
+    return np.asarray(rise.reshape(len(LINES), places.size))
 
 
 # What the page has of it
@@ -138,16 +129,6 @@ def walk_data(walk: Walk, curves: Curves) -> str:
         ],
         "stations": [asdict(station) | {"name": station.name.replace("_", " ")} for station in walk.stations],
     }
-    data = {"tabor": walk.scene.tabor, "depths": LINES, "between": BETWEEN, **_rounded(drawn)}
+    rounded = json.loads(json.dumps(plain(drawn)), parse_float=lambda text: float(f"{float(text):.5g}"))
+    data = {"tabor": walk.scene.tabor, "depths": LINES, "between": BETWEEN, **rounded}
     return json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-
-
-def _rounded(value: Any) -> Any:
-    """Numbers of five digits; what does not exist is null."""
-    if isinstance(value, dict):
-        return {name: _rounded(part) for name, part in value.items()}
-    if isinstance(value, list | np.ndarray):
-        return [_rounded(part) for part in value]
-    if isinstance(value, float):
-        return float(f"{value:.5g}") if math.isfinite(value) else None
-    return value

@@ -9,15 +9,14 @@ from dataclasses import asdict
 from functools import partial
 from typing import IO, Any
 
-import numpy as np
-
 from fem_adhesion.common.facts import code_digest, plain
 from fem_adhesion.common.files import Plain, Store
 from fem_adhesion.common.jobs import solve_all
+from fem_adhesion.common.known import known
 from fem_adhesion.common.record import UNITS, column
 from fem_adhesion.registry import record_of
 from halfspace import atlas
-from halfspace.accuracy.sweep import NUMBERS, UNKNOWN, Summary, summary
+from halfspace.accuracy.sweep import UNKNOWN, Summary, summary
 from halfspace.atlas.series import LEAST, MOST
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.events import EVENTS, Event, Tolerance
@@ -39,21 +38,11 @@ def by_atlas(tabors: Sequence[float], rtol: float, law: Law) -> dict[float, Summ
     birth = atlas.birth_of_folds()
     inside = [tabor for tabor in tabors if law == LENNARD_JONES and LEAST <= tabor <= MOST]
     inside = [tabor for tabor in inside if abs(tabor - birth.value) > birth.error]
-    mu, found = np.array(inside), dict[float, Summary]()
-    states = {"pull_off": atlas.pull_off(mu), "zero_load": atlas.zero_load(mu)}
-    states |= {"jump_on": atlas.jump_on(mu).take_off, "jump_off": atlas.jump_off(mu).take_off}
-    energies = [
-        [Estimate(*pair) for pair in zip(part.energy.tolist(), part.energy_error.tolist(), strict=True)]
-        for part in (atlas.energy_released(mu), atlas.energy_lost(mu))
-    ]
-    for i, tabor in enumerate(inside):
-        events = {
-            name: Event(name, *(float(getattr(state, number)[i]) for number in NUMBERS))
-            for name, state in states.items()
-            if np.isfinite(state.load[i])
-        }
+    found = dict[float, Summary]()
+    for tabor, (states, released, lost) in zip(inside, known(inside), strict=True):
+        events = {name: states[name] for name in EVENTS if name in states}
         if not Tolerance.on(events, rtol).missed(events):
-            found[tabor] = Summary(tabor, events, energies[0][i], energies[1][i], {})
+            found[tabor] = Summary(tabor, events, released, lost, {})
     return found
 
 
@@ -76,16 +65,13 @@ def run(
     def inputs(tabor: float) -> Plain:
         return {"tabor": tabor, **{name: record_of(value) for name, value in asked.items()}}
 
-    def write(curve: Summary) -> Plain:
-        return {name: plain(value) if isinstance(value, dict) else value for name, value in asdict(curve).items()}
-
     return solve_all(
         tabors,
         store,
         work=partial(work, **asked),
         inputs=inputs,
         name="tabor {:g}".format,
-        write=write,
+        write=lambda curve: {name: plain(value) for name, value in asdict(curve).items()},
         read=_from_plain,
         died=Summary.failed,
         **how,
