@@ -29,14 +29,11 @@ travel = np.linspace(-100, min(pressed, 25), 200)  # of the cantilever's base, i
 
 lines, noise = ["piezo_m,force_N,segment"], np.random.default_rng(1)
 for segment, jump, bases in (("approach", on, travel), ("retract", off, travel[::-1])):
-    for base in bases:
-        branch = "separated" if base < jump else "contact"
-        if branch == "separated" and base < far:  # beyond the atlas, where it is rigid
-            load = closed_forms.bradley_load(base)
-        else:
-            load = curve.at(base=base, stiffness=stiffness, branch=branch).load
-        force = load * tip.load + noise.normal(0, 5e-11)
-        lines.append(f"{base * tip.approach:.6e},{force:.6e},{segment}")
+    loads = closed_forms.bradley_load(bases)  # beyond the atlas, where it is rigid
+    for branch, there in (("separated", (far <= bases) & (bases < jump)), ("contact", jump <= bases)):
+        loads[there] = curve.at(base=bases[there], stiffness=stiffness, branch=branch).load
+    forces = loads * tip.load + noise.normal(0, 5e-11, loads.size)
+    lines += [f"{base * tip.approach:.6e},{force:.6e},{segment}" for base, force in zip(bases, forces, strict=True)]
 
 with tempfile.TemporaryDirectory() as folder:
     file = Path(folder) / "curve.csv"

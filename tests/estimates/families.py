@@ -151,12 +151,13 @@ def tighter(numbers, asked, solve, scene, path, rtol):
     what only one of both has does not count.
     """
     other = solve(scene, max(rtol / 100, 1e-9))
-    found = numbers(other, asked(path)) if asked else numbers(other)
+    found, own = numbers(other, asked(path)) if asked else numbers(other), numbers(path)
+    if found.keys() == own.keys() and not any(" at load " in what for what in found):
+        return found  # whether the load turns more often, which takes the points on the finest grid, changes nothing
     alike = path.branches("load").keys() == other.branches("load").keys()
     if not alike:
         found = {what: n for what, n in found.items() if " at load " not in what}
     if not alike or any(p.unconfirmed or p.jumps is None for p in (path, other)):
-        own = numbers(path)
         found = {w: found.get(w, Estimate(own[w].value, math.inf)) for w in own}
     return found
 
@@ -499,7 +500,7 @@ new_half_space, on_layers = partial(traced, half_space), partial(relocated, trut
 FE, HS = by_elements, by_integral
 FAMILIES = {
     "half-space": events(
-        at((*USUAL, *BETWEEN, 30, 70, 100), *range(1, 10)), at((0.05, 0.75, 2, 20), 2, 5, 8), HS, new_half_space
+        at((*USUAL, *BETWEEN, 30, 70, 100), *range(1, 10)), at((0.05, 0.75, 5), 2, 5, 8), HS, new_half_space
     ),
     "triangles": events(at((*USUAL[:12], *BETWEEN), *range(1, 7)), at((0.75, 3), 3, 5), by_triangles, new_half_space),
     "block": events(
@@ -520,11 +521,11 @@ FAMILIES = {
     "tips from tables": events(
         at(TIPS, *range(2, 10)), at(TIPS[:1], 3, 6), under_tip, partial(relocated, stages_under_tip)
     ),
-    "layers": events(at(LAYERED, *range(2, 8)), at(LAYERED[:2], 3, 6), HS, on_layers),
+    "layers": events(at(LAYERED, *range(2, 8)), at(LAYERED[0:5:4], 3, 5), HS, on_layers),
     "layers, drawn": events(
         at(drawn(drawing.on_layers, 12), 2, 4, 6), at(drawn(drawing.on_layers, 1), 4), HS, on_layers
     ),
-    "layers by elements": events(at(COATED, *range(2, 6)), at(COATED[:1], 3), FE, on_layers),
+    "layers by elements": events(at(COATED, *range(2, 6)), at(COATED[3:4], 3), FE, on_layers),
     "elements, drawn": events(
         at(drawn(drawing.of_elements, 12), 2, 4, 6), at(drawn(drawing.of_elements, 1), 3), FE, any_scene
     ),
@@ -537,7 +538,7 @@ FAMILIES = {
     "pair of spheres, bonded": sized(
         *SIZES[:4], made=partial(pair, share=0.4, counter_poisson=0.45, larger=3.0), grip="bonded", few=None
     ),
-    "block under a sphere": sized(*SIZES[2:6], made=elements_under_sphere, truth=profile),
+    "block under a sphere": sized(*SIZES[2:6], made=elements_under_sphere, truth=profile, few=2),
     "steps within a cell": events(at(STEPPED, 4, 5), at((), 4), FE, partial(relocated, truths.elements)),
     "finite strain": events(
         at(AT_FINITE_STRAIN, 3, 4, 5), at(AT_FINITE_STRAIN[:1], 3), FE, partial(relocated, truths.finite_strain)
@@ -546,17 +547,17 @@ FAMILIES = {
     "curve, half-space": curve(at((0.05, 0.3, 0.75, 1, 2, 5), 2, 4, 6, 8), at((0.3, 2), 3), HS, half_space),
     "curve, finite strain": curve(at(AT_FINITE_STRAIN[:2], 3, 4), at((), 3), FE, truths.along_at_finite_strain),
     "curve, block": curve(at((0.05, 0.3, 1, 2, 5), 2, 3, 4, 5), at((0.05, 2), 3), FE, half_space),
-    "curve, hemisphere": curve(at(SLIDING, 3, 5), at(SLIDING[1:2], 3, 4), FE, truths.harmonics),
-    "springs, half-space": springs(at((0.05, 0.3, 0.75, 1, 2, 5, 20), 2, 4, 6), at((0.3, 2), 3, 6), HS),
+    "curve, hemisphere": curve(at(SLIDING, 3, 5), at(SLIDING[1:2], 3), FE, truths.harmonics),
+    "springs, half-space": springs(at((0.05, 0.3, 0.75, 1, 2, 5, 20), 2, 4, 6), at((0.3, 2), 6), HS),
     "springs, block": springs(at((0.05, 0.3, 1, 2, 5), 2, 3, 4), at((1,), 3), FE),
     "springs, sphere's profile": springs(at(ON_PROFILE[2:7:2], 2, 4, 6), at(ON_PROFILE[6:7], 4), HS),
     "springs, hemisphere": springs(at(SLIDING, 3, 4), at(SLIDING[:1], 4), FE),
     "states, half-space": states(at((0.05, 0.3, 0.75, 1, 2, 5), 2, 4, 6), at((0.3, 2), 3), HS),
-    "states, hemisphere": states(at(SLIDING, 3, 4), at(SLIDING[:1], 3), FE),
+    "states, hemisphere": states(at(SLIDING, 3, 4), at((), 3), FE),
     "assess": Family(Net(BEADS, [0.0]), Net(BEADS[-1:], [0.0]), lambda bead, _: assess(bead), of_assessment, in_si),
     "both solvers": events(
         at(drawn(for_both_solvers, 60), 0),
-        at(drawn(for_both_solvers, 4), 0),
+        at(drawn(for_both_solvers, 2), 0),
         lambda both, _: HS(both.scene, both.rtol),
         lambda both, _, __: of_path(FE(both.scene, both.fe_rtol)),
     ),
