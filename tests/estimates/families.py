@@ -473,7 +473,8 @@ def curve(full, quick, solve, stages):
 
 def random_lines(line, full, quick):
     truth = partial(tighter, of_random, few_places, line_at)
-    return Family(at(drawn(line, full), 0), at(drawn(line, quick), 0), line_at, of_random, truth, patience=60)
+    few = at(drawn(line, quick) if quick else (), 0)
+    return Family(at(drawn(line, full), 0), few, line_at, of_random, truth, patience=60)
 
 
 def by_compare(full, **bad):
@@ -562,7 +563,7 @@ FAMILIES = {
         lambda both, _, __: of_path(FE(both.scene, both.fe_rtol)),
     ),
     "half-space, random": random_lines(half_space_line, 60, 2),
-    "elements, random": random_lines(elements_line, 30, 1),
+    "elements, random": random_lines(elements_line, 30, 0),
     "compare": by_compare(at(TOGETHER, 4)),
     "compare, drawn on layers": by_compare(at(drawn(drawing.on_layers, 12), 4), bad=("disagree",)),
 }

@@ -3,7 +3,6 @@
 import csv
 import subprocess
 import sys
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +15,8 @@ from halfspace.accuracy.finite_bodies import ChartSettings
 from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.accuracy.refinement import climb
 from halfspace.elastic.kernel import RingRules
-from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.path import Steps
-from halfspace.equilibrium.search import find_events
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Dugdale
 from halfspace.profiles import Sphere
@@ -64,11 +60,6 @@ def test_events_against_the_converged_reference(curves, row):
     assert approach_error <= event.approach_error + row["err_approach"]
 
 
-def test_the_curve_folds_above_the_critical_tabor_parameter(curves):
-    for tabor, path in curves.items():
-        assert (path.event("jump_on") is None) == (path.event("jump_off") is None) == (tabor < 0.697)
-
-
 def test_the_unstable_branch_lies_between_the_jumps(curves):
     path = curves[5]
     unstable = np.flatnonzero(~path.stable)
@@ -94,32 +85,6 @@ def test_the_curve_runs_from_separation_to_compression(curves):
         radius, error = path.contact_radius[touching], path.contact_radius_error[touching]
         assert np.all(np.diff(radius) >= -error[1:] - error[:-1]), tabor  # where one grid hands over to the next
         assert np.all(np.diff(path.arclength) >= 0)
-
-
-def test_work_along_the_curve_is_the_energy_of_its_ends():
-    """Trapezoidal rule with end corrections on a finely stepped curve, against the energies of the two end states."""
-    segments = trace_charts(
-        half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-8)), steps=Steps(longest=0.05, turn=0.02)
-    )
-    points = [point for segment in segments for point in segment.points]
-    first, last = segments[0].points[0], segments[-1].points[-1]
-    work = 0.0
-    for a, b in pairwise(points):
-        h = b.arclength - a.arclength
-        f, g = (p.observables[1] * p.rates[0] for p in (a, b))
-        work += h * (f + g) / 2
-    released = segments[0].problem.energy(first.x) - segments[-1].problem.energy(last.x)
-    assert -work == pytest.approx(released, rel=3e-4)
-    assert find_events(segments)["pull_off"].point.observables[1] == pytest.approx(-4.97501137, abs=1e-7)
-
-
-def test_jkr_limit():
-    path = halfspace.trace(50, rtol=1e-4)
-    assert path.event("pull_off").load == pytest.approx(closed_forms.JKR_PULL_OFF, rel=2e-3)
-    assert path.event("jump_off").approach / 50 == pytest.approx(-0.75 * np.pi ** (2 / 3), rel=0.01)
-    zero = path.event("zero_load")
-    assert zero.contact_radius == pytest.approx(float(closed_forms.jkr_radius(0.0)), rel=2e-3)
-    assert zero.approach == pytest.approx(float(closed_forms.jkr_approach(zero.contact_radius, 50)), rel=0.02)
 
 
 def test_the_neck_outside_a_soft_contact_is_jkrs():

@@ -9,12 +9,10 @@ from halfspace.accuracy.grids import half_space_charts, resolution_for, rings
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES
 from halfspace.scales import Scales
-from halfspace.theories import closed_forms
 
 CENTRED = compliance.panels(grid.graded(0.0, 0.3, 400.0), 10)
 EDGE = compliance.panels(grid.graded(1.0, 0.1, 400.0), 10)
@@ -126,16 +124,6 @@ def test_a_contact_wider_than_its_surface_ends_with_it(problem):
     assert problem.contact_radius(np.append(np.zeros(x.size - 2), x[-2:])) == CENTRED.extent
 
 
-def test_a_moving_grid_finds_the_state_of_a_fixed_one():
-    fixed = ContactProblem(compliance.panels(grid.graded(1.0, 0.1, 400.0), 12), 1.0)
-    moving = ContactProblem(Homogeneous(compliance.panels(grid.graded(1.0, 0.05, 800.0), 12)), 1.0)
-    x = fixed.undeformed(-0.5)
-    x[:-2] = np.maximum(x[:-2], 0.0)
-    on_fixed = newton.solve(fixed, x, newton.approach(-0.5))
-    on_moving = newton.solve(moving, transfer(fixed, on_fixed.x, moving), newton.approach(-0.5))
-    np.testing.assert_allclose(on_moving.observables, on_fixed.observables, rtol=1e-6)
-
-
 def test_energy_falls_by_the_work_of_the_load(problem, touching):
     alpha = problem.observables(touching)[0]
     step = 1e-4
@@ -155,17 +143,6 @@ def test_newton_never_returns_an_unconverged_state(problem, touching):
         newton.solve(problem, touching, newton.approach(-1.0), max_iterations=2)
     with pytest.raises(NotConverged, match=r"try"):
         newton.solve(problem, touching, newton.load(-7.0))  # no state pulls harder than 2 pi
-
-
-@pytest.mark.parametrize("build", [compliance.triangles, compliance.bands])
-def test_the_papers_grids_converge_to_the_same_pull_off(build):
-    """Pull-off at tabor 0.5 by load control from both sides of the minimum, against the converged -5.615543."""
-    problem = ContactProblem(build(grid.graded(0.0, 0.01, 200.0, growth=1.02)), tabor=0.5)
-    x = problem.undeformed(-8.0)
-    for gap in (6, 4, 3, 2, 1.5, 1, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05):
-        x = newton.solve(problem, x, newton.central_gap(gap)).x
-    loads = [newton.solve(problem, x, newton.central_gap(gap)).observables[1] for gap in np.linspace(0.0, -0.04, 21)]
-    assert min(loads) == pytest.approx(-5.615543245, rel=3e-4)
 
 
 @pytest.mark.parametrize(("tabor", "gap"), [(0.3, 4.0), (1.0, 1.5), (3.0, 0.5)])
@@ -190,16 +167,6 @@ def test_the_load_does_not_miss_the_attraction_beyond_the_grid(tabor, gap):
     d = 1e-3
     slopes = [f(-2 * d) - 8 * f(-d) + 8 * f(d) - f(2 * d) for f in (energy, approach)]
     assert slopes[0] / slopes[1] == pytest.approx(observables[1], rel=1e-8)
-
-
-def test_rigid_limit_is_bradleys_along_the_whole_path():
-    tabor = 1e-4
-    problem = ContactProblem(compliance.panels(grid.graded(0.0, 0.1 * tabor**-0.5, 400 * tabor**-0.5), 12), tabor)
-    x = problem.undeformed(-3.0)
-    for approach in (-3.0, -2.0, -1.0, -0.5, 0.0, 0.05, 0.1):
-        solution = newton.solve(problem, x, newton.approach(approach))
-        x = solution.x
-        assert solution.observables[1] == pytest.approx(float(closed_forms.bradley_load(approach)), rel=2e-3)
 
 
 @pytest.mark.parametrize("central_gap", [2.0, 11.0, 50.0])

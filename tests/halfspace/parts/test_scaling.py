@@ -17,19 +17,6 @@ def si(value, rel=1e-12):
     return pytest.approx(value, rel=rel, abs=0)
 
 
-def test_units_of_a_silica_bead():
-    units = Units(**SILICA)
-    assert units.tabor == si((1e-6 * 0.05**2 / (40e9**2 * 0.3e-9**3)) ** (1 / 3))
-    assert units.load == si(50e-9)
-    assert units.length**3 == si(1e-12 * 0.05 / 40e9)
-    assert units.length**2 / units.radius == si(units.tabor * units.approach)  # beta^2/R = mu eps
-    assert units.approach == 0.3e-9
-    assert units.pressure * units.length**2 == si(units.load)
-    assert units.stiffness == si(50e-9 / 0.3e-9)
-    assert units.energy == si(50e-9 * 0.3e-9)
-    assert units.radius_ratio == si(1e-6 / 0.3e-9)
-
-
 def test_units_one_by_one():
     """Powers of the four inputs that no two units share, so that one in another's place is seen."""
     units = Units(radius=2.0, modulus=3.0, work_of_adhesion=5.0, spacing=7.0)
