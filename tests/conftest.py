@@ -10,6 +10,7 @@ import pytest
 from longest import LONGEST
 from whole_runs import whole_run
 
+from fem_adhesion import cli
 from fem_adhesion.crosscheck import from_scratch
 
 ORIGINAL, RELATIVE, ABSOLUTE = pytest.approx, 1e-6, 1e-12
@@ -37,6 +38,24 @@ def two_solvers(monkeypatch):
     """No fourth level: what it shows of a defect is asked of it in `test_from_scratch` and `test_compare_bodies`."""
     for rows in ("closed_forms", "equations", "events"):
         monkeypatch.setattr(from_scratch, rows, lambda *_: ())
+
+
+@pytest.fixture
+def refused(capsys):
+    """See that a command line, in one or more parts, ends in one line of error with some words, and give that line."""
+
+    def see(*parts, words="", code=2):
+        arguments = [word for part in parts for word in (part.split() if isinstance(part, str) else [str(part)])]
+        try:
+            ended = cli.main(arguments)
+        except SystemExit as by_parser:
+            ended = by_parser.code
+        out, err = capsys.readouterr()
+        assert (ended, out, err.count("\n")) == (code, "", 1)
+        assert words in err
+        return err
+
+    return see
 
 
 @pytest.fixture(scope="session")

@@ -17,7 +17,7 @@ def add_options(command: Parser) -> None:
     )
     command.add_argument("--poisson", nargs="+", type=float, help="Poisson's ratios, 0 <= nu < 0.5", metavar="NU")
     command.add_argument(
-        "--quick", action="store_true", help="finish in half a minute: three by three points, less accurate"
+        "--quick", action="store_true", help="finish in half a minute: two by three points, less accurate"
     )
     add_resume(command)
     add_workers(command)

@@ -79,7 +79,7 @@ USUAL: Sequence[Combinations] = (  # some four minutes on two cores
     (FAVOURED, (30.0, 1e3), (0.0, 0.17, 0.45, 0.499), DENSE),
 )
 QUICK: Sequence[Combinations] = (  # 20 s
-    ((0.3, 1.0, 2.0), (30.0, 300.0, 3e3), (0.3,), [n for n in DENSE if n not in ("finite_body", "bonded")]),
+    ((0.3, 1.0), (30.0, 300.0, 3e3), (0.3,), [n for n in DENSE if n not in ("finite_body", "bonded")]),
     ((1.0,), (30.0, 3e3), (0.3,), ("finite_body", "bonded")),
 )
 
@@ -102,7 +102,7 @@ def plan(
     """Plan of the study: all combinations of the inputs but for spheres too small for their Tabor parameter.
 
     Poisson's ratio is 0.3 unless given. If none of the three inputs is given, it is varied besides, at some points. A
-    quick study has three by three points unless given, and a lower accuracy. InputError if an input is out of range, or
+    quick study has two by three points unless given, and a lower accuracy. InputError if an input is out of range, or
     a sphere is too small for every Tabor parameter.
     """
     grids = QUICK if quick else USUAL

@@ -82,9 +82,9 @@ QUICK = replace(
     elements=(2.0,),
     element_pull_offs=(0.5, 2.0),
     table_rtol=1e-5,
-    pull_offs=_spaced(0.005, 20, 8),
-    jumps=_spaced(1, 30, 7),
-    rising=_spaced(1, 3, 6),
+    pull_offs=_spaced(0.005, 20, 5),
+    jumps=_spaced(1, 30, 5),
+    rising=_spaced(1, 3, 5),
     rises=FULL.rises[:2],
     most_sweeps=200,
 )

@@ -62,7 +62,7 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     relaxations = tuple(attempts(given.most_sweeps))
     begin("devices")
     folding = halfspace.trace(given.devices_at, rtol=given.table_rtol)
-    tabors = tabor_of(FIRST) * (1 - np.geomspace(0.999, 1e-3, 40))
+    tabors = tabor_of(FIRST) * (1 - np.geomspace(0.999, 1e-3, 10 if quick else 40))
     begin("claims")
     paths, loads = traced | printed, {given.claimed[0]: given.deepest_load}
     paths |= {

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from chromium import END
 from made_up import ENDINGS
+from page_tables import data_of
 
 from fem_adhesion import Scene
 from fem_adhesion.common.page import Figure, Section, write_page
@@ -35,9 +36,13 @@ def report(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def stations(report):
-    found = re.search(r'id="walk-data">(.*?)</script>', report.read_text(), re.S)
-    return json.loads(found[1])["stations"]
+def data(report):
+    return data_of(report.read_text())
+
+
+@pytest.fixture(scope="module")
+def stations(data):
+    return data["stations"]
 
 
 @pytest.fixture(scope="module")
@@ -125,8 +130,7 @@ def straight(drawn, values):
     return slope, np.abs(slope * np.array(values) + start - drawn).max()
 
 
-def test_the_lines_of_each_solver_are_its_own_numbers(open_page, stations, report):
-    data = json.loads(re.search(r'id="walk-data">(.*?)</script>', report.read_text(), re.S)[1])
+def test_the_lines_of_each_solver_are_its_own_numbers(open_page, stations, data):
     shown = open_page()
     number = next(k for k, one in enumerate(stations) if one["name"] == "pull off")
     shown.locator("#state").fill(str(number))
@@ -169,13 +173,13 @@ def test_points_are_load_against_approach_hollow_if_unstable(open_page, stations
 
 def test_curves_are_load_against_approach_marked_if_unstable(browser, report):
     """On a page whose half-space bears twice the load; along the scales of the points."""
-    found = re.search(r'(id="walk-data">)(.*?)(</script>)', report.read_text(), re.S)
-    data = json.loads(found[2])
+    text, changed = report.read_text(), report.with_name("changed.html")
+    data = data_of(text)
     fe, hs = data["curves"]
     hs["load"] = [2 * load for load in hs["load"]]
-    changed = report.with_name("changed.html")
-    text = report.read_text()
-    changed.write_text(text[: found.start(2)] + json.dumps(data) + text[found.end(2) :])
+    before, old, after = re.split(r'(?<=id="walk-data">)(.*?)(?=</script>)', text, maxsplit=1, flags=re.S)
+    assert old
+    changed.write_text(before + json.dumps(data) + after)
     shown = browser.new_page()
     shown.goto(changed.as_uri())
     scale = "all => all.map(c => [+c.getAttribute('cx'), +c.getAttribute('cy')])"

@@ -11,9 +11,8 @@ import pytest
 from rich.console import Console
 from scipy.optimize import brentq
 
-import fem_adhesion
 import halfspace
-from fem_adhesion import Hemisphere, cli, convergence
+from fem_adhesion import cli, convergence
 from fem_adhesion.assess import figure as assess_figure
 from fem_adhesion.assess import study
 from fem_adhesion.assess import theories as assess_theories
@@ -23,11 +22,10 @@ from fem_adhesion.assess.terminal import contact_radius, record, report
 from fem_adhesion.assess.verdict import Distance, cautions, left_out, ranked, regime, verdict
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.numbers import DIGITS, KINDS, PREFIXES, engineering, exponent_of, parse, with_error
-from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.laws import Morse
-from halfspace.scaling import Units, spacing_of
+from halfspace.scaling import Units
 from halfspace.theories import closed_forms as theories
 from halfspace.theories.exact_sphere import JKRSphere
 from halfspace.theories.maugis import MaugisDugdale
@@ -66,9 +64,6 @@ def test_quantities_are_read_into_si(text, name, value):
         ("nm", "radius", "radius = 'nm' is not a number with a unit; write it as 100nm"),
         ("", "spacing", "spacing = '' is not a number with a unit; write it as 0.143nm"),
         ("-3nm", "spacing", "spacing = -3nm is outside 0 < spacing < inf; write it as 0.143nm"),
-        ("0nm", "spacing", "spacing = 0nm is outside"),
-        ("nan nm", "spacing", "spacing = nan nm is outside"),
-        ("inf N/m", "stiffness", "stiffness = inf N/m is outside"),
         ("1e400nm", "radius", "radius = 1e400nm is outside"),
         ("3 kg", "spacing", "spacing = 3 kg has a unit of the wrong kind, limit: a multiple of m; as in 0.143nm"),
         ("3 degC", "spacing", "wrong kind"),
@@ -91,26 +86,16 @@ def test_what_is_no_quantity_is_refused_in_one_line(text, name, message):
         ({"radius": math.nan}, "outside 0 < 1/R"),
         ({"modulus": 0.0}, "young = 0 Pa is outside 0 < young < inf"),
         ({"poisson": 0.5}, "poisson = 0.5 is outside 0 <= poisson < 0.5; take 0.4999 for rubber"),
-        ({"poisson": -0.1}, "poisson = -0.1 is outside"),
         ({"work_of_adhesion": -0.1}, "work_of_adhesion = -0.1 J/m.2 is outside"),
         ({"spacing": math.inf}, "spacing = inf m is outside"),
         ({"stiffness": 0.0}, "stiffness = 0 N/m is outside 0 < stiffness; leave it out for fixed grips"),
-        ({"stiffness": math.nan}, "stiffness = nan N/m"),
         ({"counter_modulus": 1e9}, "counter_poisson = None, limit: with both or none of"),
-        ({"counter_poisson": 0.3}, "counter_modulus = None"),
         ({"counter_modulus": 1e9, "counter_poisson": 0.7}, "poisson = 0.7 is outside"),
     ],
 )
 def test_a_contact_that_cannot_be_is_refused(change, message):
     with pytest.raises(ValueError, match=message):
         Contact(**(SILICA | change))
-
-
-def test_two_bodies_enter_by_contact_modulus_and_radius():
-    pair = Contact(**SILICA, counter_modulus=70e9, counter_poisson=0.17, counter_radius=100e-9, stiffness=0.2)
-    assert pair.units.modulus == pytest.approx(70e9 / (2 * (1 - 0.17**2)))
-    assert pair.units.radius == pytest.approx(50e-9)
-    assert pair.reduced_stiffness == pytest.approx(0.2 * 0.3e-9 / (50e-9 * 0.1))
 
 
 # Closed theories ------------------------------------------------------------------------------------------------------
@@ -369,22 +354,6 @@ def test_the_command_prints_and_writes_what_it_computed(said):
         assert line in said.text.replace("\n", " ")
 
 
-def test_a_hamaker_constant_in_the_place_of_the_spacing(monkeypatch, capsys):
-    contacts = []
-    monkeypatch.setattr(study, "assess", lambda contact, *_: contacts.append(contact) or pytest.skip.Exception)
-    by_spacing, by_hamaker = (
-        [*ARGUMENTS[: ARGUMENTS.index("--spacing")], *law, *ARGUMENTS[ARGUMENTS.index("--spacing") + 2 :]]
-        for law in (("--spacing", f"{spacing_of(6.5e-20, 0.1)}m"), ("--hamaker", "65zJ"))
-    )
-    for arguments in (by_spacing, by_hamaker):
-        with pytest.raises(AttributeError):
-            cli.main(arguments)
-    assert contacts[0].spacing == pytest.approx(contacts[1].spacing, rel=1e-12)
-    assert contacts[1].units.hamaker == pytest.approx(6.5e-20, rel=1e-12)
-    assert cli.main([*by_hamaker, "--spacing", "0.3nm"]) == 2
-    assert "--spacing and --hamaker are given" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize("width", [150, 80, 45, 30])
 def test_every_number_unit_and_sentence_is_whole_at_any_width(silica, bead, width):
     for assessment in (silica, bead):
@@ -397,17 +366,6 @@ def test_every_number_unit_and_sentence_is_whole_at_any_width(silica, bead, widt
         flat = " ".join(text.split())
         for model in assessment.models:  # shown, or said to be left out
             assert model.model in flat
-
-
-def test_half_space_and_finite_sphere_are_each_their_own(silica):
-    """The finite sphere against a scene traced for itself, from which the half-space is well away."""
-    units = silica.contact.units
-    scene = Scene(units.tabor, Hemisphere(radius_ratio=units.radius_ratio, poisson=0.17))
-    truth = fem_adhesion.trace(scene, rtol=1e-3, to_load=2.0).event("pull_off")
-    force = silica.finite.values["pull_off_force"]
-    assert abs(force.value + truth.load * units.load) < (truth.load_error * units.load + force.error)
-    apart = abs(silica.half_space.values["pull_off_force"].value - force.value)
-    assert apart > 10 * (truth.load_error * units.load + force.error)
 
 
 def test_the_half_space_in_si(silica):
@@ -484,36 +442,14 @@ def _verdict(half_space, profile, finite, *theories):
     return verdict(finite or half_space, distances, computed=finite is not None)
 
 
-@pytest.mark.parametrize(
-    ("half_space", "profile", "finite", "theories", "told"),
-    [
-        (
-            ("half-space", 1.5),
-            ("true profile", -1.0),
-            ("finite sphere", 1.0),
-            ("rigid", 1.001),
-            "trust the finite sphere; within 1 % in every quantity: rigid",
-        ),
-        (
-            ("half-space", 1.0),
-            ("true profile", 1.1),
-            None,
-            None,
-            "the finite body is not known: judge the half-space by the cautions",
-        ),
-        (
-            ("half-space", 1.5),
-            None,
-            ("finite pair", 1.0),
-            ("rigid", 1.2),
-            "trust the finite pair; no other model is within 1 % in every quantity, the rigid sphere is nearest, "
-            "off by up to 20 %",
-        ),
-    ],
-)
-def test_the_verdict_follows_absurd_numbers(half_space, profile, finite, theories, told):
-    half_space, profile, finite, theories = (one and _model(*one) for one in (half_space, profile, finite, theories))
-    assert _verdict(half_space, profile, finite, *([theories] if theories else [])) == told
+def test_the_verdict_follows_absurd_numbers():
+    half_space, rigid = _model("half-space", 1.5), _model("rigid", 1.2)
+    near = _verdict(half_space, _model("true profile", -1.0), _model("finite sphere", 1.0), _model("rigid", 1.001))
+    assert near == "trust the finite sphere; within 1 % in every quantity: rigid"
+    unknown = _verdict(half_space, _model("true profile", 1.1), None)
+    assert unknown == "the finite body is not known: judge the half-space by the cautions"
+    far = "no other model is within 1 % in every quantity, the rigid sphere is nearest, off by up to 20 %"
+    assert _verdict(half_space, None, _model("finite pair", 1.0), rigid) == f"trust the finite pair; {far}"
 
 
 def test_the_distance_of_a_model_is_what_it_may_be_at_most():

@@ -120,23 +120,19 @@ def test_the_spread_of_a_radius_keeps_the_length_of_the_tip(tmp_path):
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        (["--profile", "power:3", "--grip", "bonded"], "--grip would have no effect, limit: without --profile"),
-        (["--profile", "power:3", "--counter-radius", "1um"], "does not go with another round body"),
-        (["--profile", "power:3", "--mesh", str(MESH)], "does not go with a mesh, which has its own surface"),
-        (["--mesh", str(MESH), "--thickness", "9nm"], "does not go with another body or a thin sample"),
-        (["--mesh", str(MESH), "--modulus", "70MPa"], "limit: 0 <= tabor <= 10 with --mesh"),
-        (["--mesh", str(MESH), "--poisson", "0.2+-0.01"], "poisson has a standard deviation, limit: none with --mesh"),
-        (["--mesh", "no.msh"], "no.msh"),
-        (["--profile", "power:3", "--modulus", "0.1MPa"], "<= tabor <= 300 with --profile"),
-        (["--profile", "tabulated:{table}", "--radius", "90nm"], "apex has 100 in its table's unit"),
-        (["--profile", "tabulated:{table}", "--radius", "100+-9nm"], "limit: none with a tip's table"),
-        (["--profile", "hyperboloid:30"], "b = 30 has no unit"),
-        (["--profile", "cone:3"], "profile = cone, limit: one of"),
+        ("--profile power:3 --grip bonded", "--grip would have no effect, limit: without --profile"),
+        ("--profile power:3 --counter-radius 1um", "does not go with another round body"),
+        (f"--profile power:3 --mesh {MESH}", "does not go with a mesh, which has its own surface"),
+        (f"--mesh {MESH} --thickness 9nm", "does not go with another body or a thin sample"),
+        (f"--mesh {MESH} --modulus 70MPa", "limit: 0 <= tabor <= 10 with --mesh"),
+        (f"--mesh {MESH} --poisson 0.2+-0.01", "poisson has a standard deviation, limit: none with --mesh"),
+        ("--mesh no.msh", "no.msh"),
+        ("--profile power:3 --modulus 0.1MPa", "<= tabor <= 300 with --profile"),
+        ("--profile tabulated:{table} --radius 90nm", "apex has 100 in its table's unit"),
+        ("--profile tabulated:{table} --radius 100+-9nm", "limit: none with a tip's table"),
+        ("--profile hyperboloid:30", "b = 30 has no unit"),
+        ("--profile cone:3", "profile = cone, limit: one of"),
     ],
 )
-def test_what_does_not_go_with_a_shape_is_refused_in_a_line(more, words, tmp_path, capsys):
-    own = [word.format(table=table(tmp_path)) for word in more]
-    assert cli.main(["assess", *OPTIONS, *own]) == 2
-    said = capsys.readouterr().err
-    assert words in said
-    assert said.count("\n") == 1
+def test_what_does_not_go_with_a_shape_is_refused_in_a_line(more, words, tmp_path, refused):
+    refused("assess", *OPTIONS, more.format(table=table(tmp_path)), words=words)

@@ -67,10 +67,10 @@ def test_a_spread_that_cannot_be_is_refused(text, message):
         measured(text, "radius")
 
 
-def test_other_commands_refuse_a_standard_deviation(capsys):
+def test_other_commands_refuse_a_standard_deviation(refused):
     given = ["--radius", "100+-20nm", "--modulus", "70GPa", "--poisson", "0.17", "--work-of-adhesion", "0.1J/m^2"]
-    assert cli.main(["curve", *given, "--spacing", "0.3nm", "--csv", "-"]) == 2
-    assert "a value without a standard deviation, which assess alone takes" in capsys.readouterr().err
+    words = "a value without a standard deviation, which assess alone takes"
+    refused("curve", *given, "--spacing", "0.3nm", "--csv", "-", words=words)
 
 
 def test_the_first_order_is_the_exact_derivative():
@@ -162,30 +162,21 @@ def test_without_an_atlas_the_first_order_alone_is_told():
 
 
 @pytest.mark.parametrize(
-    ("value", "deviation", "told"),
-    [(37.1039e-9, 7.43e-9, "37.1 +- 7.4 nN"), (-1.85555e-7, 4.4e-9, "-185.6 +- 4.4 nN"), (9e-9, 3e-7, "9 +- 300 nN")],
+    ("value", "error", "deviation", "told"),
+    [
+        (37.1039e-9, 1e-15, 7.43e-9, "37.1 +- 7.4 nN"),
+        (-1.85555e-7, 1e-15, 4.4e-9, "-185.6 +- 4.4 nN"),
+        (9e-9, 1e-15, 3e-7, "9 +- 300 nN"),
+        (3.63346789e-7, 2e-11, 7.5e-12, "363.35 +- 0.01 nN"),
+    ],
 )
-def test_digits_are_those_that_the_spread_leaves(value, deviation, told):
-    assert spread_told(Spread(value, 1e-15, "N", deviation, {}, (), math.nan, True)) == told
-
-
-def test_no_digit_is_shown_that_the_number_has_not():
-    assert spread_told(Spread(3.63346789e-7, 2e-11, "m", 7.5e-12, {}, (), math.nan, True)) == "363.35 +- 0.01 nm"
+def test_digits_are_those_that_spread_and_error_leave(value, error, deviation, told):
+    assert spread_told(Spread(value, error, "N", deviation, {}, (), math.nan, True)) == told
 
 
 @pytest.mark.parametrize(
     ("tabor", "stiffness"),
-    [
-        (0.3, 0.0045),
-        (0.1, 0.1),
-        (2.0, math.inf),
-        (5.0, 0.1),
-        (2.0, 1e-4),
-        (50.0, 0.01),
-        (1.0, 5.0),
-        (0.5, math.inf),
-        (2.0, 1.1e-3),
-    ],
+    [(0.3, 0.0045), (0.1, 0.1), (2.0, math.inf), (5.0, 0.1), (50.0, 0.01), (0.5, math.inf), (2.0, 1.1e-3)],
 )
 def test_the_atlas_agrees_with_solved_curves_within_errors(tabor, stiffness):
     units = Units(2.0, 3.0, 5.0, 7.0)

@@ -45,9 +45,6 @@ def transferred(x, problem):
     return start
 
 
-# --- against the condensed problem ---
-
-
 @pytest.fixture(scope="module")
 def curve(body):
     return trace_charts([Chart(ContactProblem(body.operator, 2.0), body.unknowns)])[0]
@@ -77,6 +74,3 @@ def test_every_far_field_and_quadrature_condenses_exactly(far_field, points):
         a = solved(condensed, control)
         b = newton.solve(whole, transferred(a.x, whole), control)
         np.testing.assert_allclose(b.observables, a.observables, rtol=1e-11, atol=1e-11)
-
-
-# --- failures ---

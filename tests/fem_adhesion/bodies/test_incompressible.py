@@ -77,9 +77,6 @@ def test_quadrilaterals_of_displacements_alone_lock():
     )
 
 
-# --- Taylor and Hood ---
-
-
 # --- where it is used ---
 
 

@@ -11,13 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from fem_adhesion import cli
-from fem_adhesion.common.files import (
-    NotWritten,
-    directory_written_aside,
-    open_store,
-    writing,
-    written_aside,
-)
+from fem_adhesion.common.files import NotWritten, directory_written_aside, open_store, writing, written_aside
 from fem_adhesion.curve import solve as curves
 
 CURVE = ["curve", "--tabor", "0.5", "--rtol", "1e-2"]
@@ -75,7 +69,7 @@ def _full(*_args, **_kwargs):
 
 
 @pytest.mark.parametrize("command", ["speed", "greenwood", "finite-sphere"])
-def test_a_full_disk_ends_each_study_and_leaves_nothing(command, tmp_path, monkeypatch, capsys):
+def test_a_full_disk_ends_each_study_and_leaves_nothing(command, tmp_path, monkeypatch, refused):
     from fem_adhesion.finite_sphere import page as finite_sphere_page
     from fem_adhesion.finite_sphere import study as finite_sphere
     from fem_adhesion.greenwood import page as greenwood_page
@@ -88,10 +82,8 @@ def test_a_full_disk_ends_each_study_and_leaves_nothing(command, tmp_path, monke
     monkeypatch.setattr(speed, "measure", lambda *_, **__: None)
     monkeypatch.setattr(greenwood, "compute", lambda **_: None)
     monkeypatch.setattr(finite_sphere, "run", lambda *_, **__: [SimpleNamespace(status="solved", failed=False)])
-    assert cli.main([command, "--out", str(tmp_path / "out")]) == 1
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert f"{tmp_path / 'out'} cannot be written (No space left on device)" in error
+    words = f"{tmp_path / 'out'} cannot be written (No space left on device)"
+    refused(command, "--out", tmp_path / "out", words=words, code=1)
     assert not list(tmp_path.iterdir())
 
 
@@ -102,19 +94,16 @@ def test_a_defect_is_not_taken_for_a_full_disk(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_what_is_refused_at_once_is_bad_input(tmp_path, monkeypatch, capsys):
+def test_what_is_refused_at_once_is_bad_input(tmp_path, monkeypatch, refused):
     monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda *_: pytest.fail("worked"))
     monkeypatch.setattr(os, "access", lambda *_: False)
     monkeypatch.setattr(Path, "mkdir", lambda _: (_ for _ in ()).throw(OSError(errno.EROFS, "Read-only file system")))
     for option, words in (("--json", "choose a folder that exists and is yours"), ("--vtk", "choose a disk that is")):
-        assert cli.main([*CURVE, option, str(tmp_path / "a")]) == 2
-        error = capsys.readouterr().err
-        assert words in error
-        assert error.count("\n") == 1
+        refused(*CURVE, option, tmp_path / "a", words=words)
 
 
 @pytest.mark.parametrize(("option", "name"), [("--json", "a.json"), ("--csv", "a.csv"), ("--vtk", ".")])
-def test_a_folder_that_vanishes_meanwhile_is_named(option, name, tmp_path, monkeypatch, capsys):
+def test_a_folder_that_vanishes_meanwhile_is_named(option, name, tmp_path, monkeypatch, refused):
     folder = tmp_path / "folder"
     folder.mkdir()
     solve = curves.solve
@@ -124,10 +113,9 @@ def test_a_folder_that_vanishes_meanwhile_is_named(option, name, tmp_path, monke
         return solve(question, step)
 
     monkeypatch.setattr(curves, "solve", vanishing)
-    assert cli.main([*CURVE, option, str(folder / name), *(["--points", "0"] if option == "--vtk" else [])]) == 1
-    error = capsys.readouterr().err
-    assert f"{folder / name} cannot be written (No such file or directory); choose a folder that exists" in error
-    assert error.count("\n") == 1
+    more = ["--points", "0"] if option == "--vtk" else []
+    words = f"{folder / name} cannot be written (No such file or directory); choose a folder that exists"
+    refused(*CURVE, option, folder / name, *more, words=words, code=1)
     assert not folder.exists()
 
 

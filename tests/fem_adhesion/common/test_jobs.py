@@ -189,31 +189,25 @@ def listens(address):
     return True
 
 
-def started(folder, workers):
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """A scheduler without workers; the last test of the file ends it."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(parallel, "PATIENCE", Patience(connection=LONG))
-        cluster = Cluster(folder)
+        made = Cluster(tmp_path_factory.mktemp("dask"))
         try:
-            for _ in range(workers):
-                cluster.add_worker()
-            if workers:
-                cluster.wait_for(workers)
-            yield cluster
+            yield made
         finally:
-            cluster.end(cluster.scheduler, *cluster.workers)
+            made.end(made.scheduler, *made.workers)
 
 
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory):
-    """A scheduler with two workers; the last test of the file ends it."""
-    yield from started(tmp_path_factory.mktemp("dask"), 2)
-
-
-@pytest.fixture
-def empty(tmp_path):
-    """A cluster without workers."""
-    (tmp_path / "dask").mkdir()
-    yield from started(tmp_path / "dask", 0)
+def staffed(cluster):
+    """The same with two workers."""
+    while len(cluster.workers) < 2:
+        cluster.add_worker()
+    cluster.wait_for(2)
+    return cluster
 
 
 def marking(item):
@@ -226,22 +220,22 @@ def marking(item):
 
 
 @needs_cluster
-def test_missing_workers_are_named_and_waited_for(empty, capsys):
+def test_missing_workers_are_named_and_waited_for(cluster, capsys):
     results = []
-    at_work = threading.Thread(target=lambda: results.extend(stream(square, [3], dask=empty.address)))
+    at_work = threading.Thread(target=lambda: results.extend(stream(square, [3], dask=cluster.address)))
     at_work.start()
     said = []
     wait_until(lambda: said.append(capsys.readouterr().err) or "no workers" in "".join(said))
-    empty.add_worker()
+    cluster.add_worker()
     at_work.join(LONG)
     assert results == [(3, 9)]
-    assert f"start one with dask worker {empty.address}\n" in "".join(said)
+    assert f"start one with dask worker {cluster.address}\n" in "".join(said)
 
 
 @needs_cluster
-def test_a_dask_cluster_does_the_work_and_hides_no_error(cluster, capsys):
+def test_a_dask_cluster_does_the_work_and_hides_no_error(staffed, capsys):
     """It is found by host and port alone."""
-    address = cluster.address.removeprefix("tcp://")
+    address = staffed.address.removeprefix("tcp://")
     assert sorted(stream(square, range(20), dask=address)) == [(x, x * x) for x in range(20)]
     assert "no workers" not in capsys.readouterr().err
     with pytest.raises(ZeroDivisionError, match="item 0"):
@@ -249,22 +243,22 @@ def test_a_dask_cluster_does_the_work_and_hides_no_error(cluster, capsys):
 
 
 @needs_cluster
-def test_an_item_whose_cluster_worker_dies_goes_to_another(cluster, tmp_path):
+def test_an_item_whose_cluster_worker_dies_goes_to_another(staffed, tmp_path):
     items = [(x, 1, str(tmp_path)) for x in range(6)]
-    assert sorted(result for _, result in stream(deadly, items, dask=cluster.address)) == [x * x for x in range(6)]
+    assert sorted(result for _, result in stream(deadly, items, dask=staffed.address)) == [x * x for x in range(6)]
     assert len(list(tmp_path.iterdir())) == 1
 
 
 @needs_cluster
-def test_an_item_that_kills_every_cluster_worker_is_given_up(cluster, tmp_path):
-    results = {item[0]: r for item, r in stream(deadly, [(x, 99, str(tmp_path)) for x in (2, 3)], dask=cluster.address)}
+def test_an_item_that_kills_every_cluster_worker_is_given_up(staffed, tmp_path):
+    results = {item[0]: r for item, r in stream(deadly, [(x, 99, str(tmp_path)) for x in (2, 3)], dask=staffed.address)}
     assert results[2] == 4
     assert "its worker died" in results[3].reason
 
 
 @needs_cluster
-def test_a_scheduler_that_has_gone_ends_the_work_in_one_line(cluster, tmp_path):
-    at_work = stream(marking, [str(tmp_path)], dask=cluster.address)
-    threading.Thread(target=lambda: (wait_until((tmp_path / "begun").exists), cluster.end(cluster.scheduler))).start()
+def test_a_scheduler_that_has_gone_ends_the_work_in_one_line(staffed, tmp_path):
+    at_work = stream(marking, [str(tmp_path)], dask=staffed.address)
+    threading.Thread(target=lambda: (wait_until((tmp_path / "begun").exists), staffed.end(staffed.scheduler))).start()
     with pytest.raises(InputError, match=r"^dask[^\n]*; start it and run the command again$"):
         next(at_work)

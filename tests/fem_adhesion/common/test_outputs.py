@@ -58,6 +58,8 @@ def test_a_command_says_in_one_line_what_it_wrote(name, tmp_path, monkeypatch, c
     inside = f"{place}/ ({len(list((tmp_path / place).iterdir()))} files)" if place else ""
     assert set(told.replace(inside, "").split()) == made
     assert inside in told
+    if name in ("curve", "assess"):  # which take longest
+        return
     if place:
         assert cli.main(line) == 2
         assert f"{place} holds" in capsys.readouterr().err

@@ -1,7 +1,6 @@
 """The report: everything in one page, what is missing named, bad input refused before any work."""
 
 import csv
-import json
 import re
 from base64 import b64decode
 from dataclasses import replace
@@ -10,6 +9,7 @@ from html import unescape
 import numpy as np
 import pytest
 from made_up import ENDINGS
+from page_tables import data_of
 
 from fem_adhesion import Scene, cli
 from fem_adhesion.common.page import symbols
@@ -34,20 +34,15 @@ def html(contents):
     return page(contents)
 
 
-@pytest.fixture(scope="module")
-def picture(contents):
-    return report_page._curves_section(contents.curves)
-
-
-@pytest.fixture
-def _drawn_before(contents, picture, monkeypatch):
-    """Pages of the same curves have the picture of them that was drawn before."""
-    draw = report_page._curves_section
-    monkeypatch.setattr(report_page, "_curves_section", lambda one: picture if one is contents.curves else draw(one))
-
-
-def data_of(html):
-    return json.loads(re.search(r'id="walk-data">(.*?)</script>', html, re.S)[1])
+@pytest.fixture(scope="module", autouse=True)
+def _drawn_once():
+    """Curves of which there are several pages are drawn once."""
+    drawn, draw = {}, report_page._curves_section
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            report_page, "_curves_section", lambda one: drawn.get(id(one)) or drawn.setdefault(id(one), draw(one))
+        )
+        yield
 
 
 def test_the_page_holds_everything_and_needs_no_network(html):
@@ -70,22 +65,12 @@ def speed_left(directory, picture):
         (directory / f"{stem}.csv").write_text("a\n1\n")
 
 
-@pytest.mark.usefixtures("_drawn_before")
 def test_a_picture_enters_the_page_as_an_image(contents, tmp_path):
     speed_left(tmp_path, HOSTILE)
     html = page(replace(contents, directories={"speed": tmp_path}))
     (shown,) = re.findall(r'<img src="data:image/svg\+xml;base64,([^"]*)" alt="see &#34;this&#34; &amp; that">', html)
     assert b64decode(shown) == HOSTILE
     assert "alert" not in html
-
-
-@pytest.mark.parametrize(("picture", "words"), [(b"<html/>", "its first element is html"), (b"not", "syntax error")])
-def test_a_picture_that_is_none_is_refused_before_any_work(picture, words, tmp_path, capsys):
-    speed_left(tmp_path, picture)
-    assert cli.main(["report", "--html", str(tmp_path / "report.html"), "--speed", str(tmp_path)]) == 2
-    error = capsys.readouterr().err
-    assert f"{tmp_path / 'pull_off.svg'} is no SVG picture: {words}" in error
-    assert error.endswith("; run its command again\n")
 
 
 @pytest.mark.parametrize(
@@ -146,21 +131,21 @@ def test_the_stations_of_a_walk_balance(contents):
         ("--hard", "hard.csv", b"name,ended\na,b\n", "has the columns name, ended, but not outcome; "),
         ("--hard", "hard.csv", b"name,outcome\na\n", "line 2: 1 cells, not 2; "),
         ("--hard", "hard.csv", b"name,outcome\n\xff,b\n", "cannot be read as CSV: "),
+        ("--speed", "pull_off.svg", b"<html/>", "is no SVG picture: its first element is html; "),
+        ("--speed", "pull_off.svg", b"not", "is no SVG picture: syntax error"),
     ],
 )
-def test_a_table_of_other_columns_is_refused_before_any_work(option, name, content, words, tmp_path, capsys):
+def test_what_cannot_be_read_is_refused_before_any_work(option, name, content, words, tmp_path, refused):
     (tmp_path / "locking.csv").write_text("poisson,error\n0.3,1e-5\n")
+    if name.endswith("svg"):
+        speed_left(tmp_path, content)
     if content is not None:
         (tmp_path / name).write_bytes(content)
-    assert cli.main(["report", "--html", str(tmp_path / "report.html"), option, str(tmp_path)]) == 2
-    error = capsys.readouterr().err
+    error = refused("report", "--html", tmp_path / "report.html", option, tmp_path, words=words)
     assert str(tmp_path / name) in error
-    assert words in error
     assert error.endswith("; run its command again\n") or content is None
-    assert error.count("\n") == 1
 
 
-@pytest.mark.usefixtures("_drawn_before")
 def test_the_page_has_what_other_commands_left(contents, tmp_path, monkeypatch, capsys):
     """Solved before; `test_readme` has it solve for itself, with all that the other commands left."""
     hard = tmp_path / "hard"
@@ -204,7 +189,6 @@ def words_of(html):
     return re.sub(r"\s+", " ", unescape(re.sub(r"<[^>]*>", " ", shown)))
 
 
-@pytest.mark.usefixtures("_drawn_before")
 @pytest.mark.parametrize("verdict", ENDINGS)
 def test_page_and_exit_code_tell_the_verdict_of_the_cases(contents, verdict, tmp_path, monkeypatch, capsys):
     solved_before(monkeypatch, contents, ENDINGS[verdict])
@@ -240,7 +224,6 @@ def test_a_curve_that_cannot_be_solved_is_said_to_be_missing(tmp_path, monkeypat
     assert 'id="walk-data"' not in html
 
 
-@pytest.mark.usefixtures("_drawn_before")
 def test_what_is_said_of_the_states_is_counted(contents):
     walked = contents.walk
     unstable = sum(not station.stable for station in walked.stations)
@@ -285,7 +268,6 @@ def test_the_caption_names_what_the_figure_shows(html):
     assert "Pressure and gap at jump on, jump off, pull-off, zero load;" in caption
 
 
-@pytest.mark.usefixtures("_drawn_before")
 @pytest.mark.parametrize(("outcomes", "warning"), [("converged refused", ""), ("converged wrong wrong", "2 wrong.")])
 def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, contents, tmp_path):
     lines = [f"case {k},{outcome}" for k, outcome in enumerate(outcomes.split())]
@@ -300,19 +282,12 @@ def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, content
 # --- the walk ---
 
 
-def test_states_of_the_walk_are_stable_where_the_curve_is(contents, html):
-    path, walked = contents.walk.path, contents.walk
-    stable = dict(zip(path.arclength.tolist(), path.stable.tolist(), strict=True))
-    between = [station for station in walked.stations if not station.name]
-    assert [station.stable for station in between] == [stable[station.arclength] for station in between]
-    data = data_of(html)["stations"]
-    assert [one["stable"] for one in data] == [station.stable for station in walked.stations]
-
-
 def test_each_number_of_a_station_stands_under_its_name(contents, html):
     walked = contents.walk
-    shown = data_of(html)["stations"]
+    shown, path = data_of(html)["stations"], walked.path
+    stable = dict(zip(path.arclength.tolist(), path.stable.tolist(), strict=True))
     for one, station in zip(shown, walked.stations, strict=True):
+        assert one["stable"] == station.stable == (station.stable if station.name else stable[station.arclength])
         for name in ("arclength", "approach", "load", "central_gap"):
             assert one[name] == pytest.approx(getattr(station, name), rel=1e-4)
         assert (one["contact_radius"] is None) == np.isnan(station.contact_radius)

@@ -2,9 +2,7 @@
 
 from functools import cache, partial
 
-import numpy as np
 import pytest
-from scipy.special import ellipkinc, ellipkm1
 
 import fem_adhesion
 import halfspace
@@ -62,23 +60,8 @@ def _uniform_over_both_intervals(halves):
     return halves.sum(axis=-1, keepdims=True) * [1.0, 1.0]
 
 
-def _near_half_of_the_ring(r, s, distance):
-    """The ring as a section shows it, without its image beyond the axis: psi = (pi - phi)/2 from pi/4 to pi/2."""
-    complement = (distance / (r + s)) ** 2
-    both = ellipkm1(complement) - ellipkinc(np.pi / 4, 1 - complement)
-    return 4 / np.pi / (r + s) * both * s
-
-
-def _modulus_for_parameter(r, s, distance):
-    """K(k) where scipy wants K(k^2)."""
-    larger = np.maximum(r, s)
-    return 4 / np.pi / larger * ellipkm1(distance / larger) * s
-
-
 WRONG = {
     "half a triangle": partial(_integrals_of, _without_one_half),
-    "no image beyond the axis": partial(panel_integrals, ring=_near_half_of_the_ring),
-    "modulus for parameter": partial(panel_integrals, ring=_modulus_for_parameter),
     "uniform for linear": partial(_integrals_of, _uniform_over_both_intervals),
 }
 

@@ -6,15 +6,11 @@ from dataclasses import replace
 
 import pytest
 from made_up import AGREE, DISAGREE, ENDINGS, FAILED, MISSING, NUMBERS, WIDE, case
-from page_tables import tables, value_and_error
+from page_tables import value_and_error
 
 from fem_adhesion import cli
 from fem_adhesion.crosscheck import scenes as beside
-from fem_adhesion.crosscheck.comparison import (
-    columns,
-    crosscheck_record,
-    crosscheck_tables,
-)
+from fem_adhesion.crosscheck.comparison import columns, crosscheck_record, crosscheck_tables
 from fem_adhesion.report.page import LEVELS, crosscheck_section, settings_section, verdict_words
 from halfspace.values import Estimate
 
@@ -101,18 +97,14 @@ def test_each_key_of_the_record_holds_what_it_says():
     assert record["verdict"] == "failed"
 
 
-def section_text(section):
-    return "".join(
-        f"<table><tr>{''.join(f'<th>{c}</th>' for c in table.columns)}</tr>"
-        + "".join(f"<tr>{''.join(f'<td>{c}</td>' for c in line)}</tr>" for line in table.rows)
-        + "</table>"
-        for table in section.tables
-    )
+def tables_of(section):
+    """Tables of a section, each a list of lines: cells by the headers."""
+    return [[dict(zip(table.columns, line, strict=True)) for line in table.rows] for table in section.tables]
 
 
 def test_the_reports_levels_hold_values_under_their_headers():
     section = crosscheck_section([case(AGREE, DISAGREE), FAILED])
-    summary, lost, operators, *others, events = tables(section_text(section))
+    summary, lost, operators, *others, events = tables_of(section)
     assert others == [[]] * (len(LEVELS) - 2)
     assert lost == [{"Tabor parameter": "3", "reason": FAILED.reason}]
     for line, row, tabor in zip([*operators, *events], (WIDE, AGREE, DISAGREE), ("3", "2", "2"), strict=True):
@@ -130,9 +122,9 @@ def test_the_reports_levels_hold_values_under_their_headers():
 
 def test_a_difference_without_an_error_is_in_the_summary():
     certain = replace(DISAGREE, first=Estimate(1.0, 0.0), second=Estimate(2.0, 0.0), difference=1.0)
-    summary = tables(section_text(crosscheck_section([case(certain)])))[0]
+    summary = tables_of(crosscheck_section([case(certain)]))[0]
     assert summary[-1]["largest difference / error"] == "inf"
-    (missing,) = (line for line in tables(section_text(crosscheck_section([case(MISSING)])))[0][-1:])
+    (missing,) = (line for line in tables_of(crosscheck_section([case(MISSING)]))[0][-1:])
     assert (missing["disagree"], missing["largest difference / error"]) == ("1", "none")
 
 
@@ -141,7 +133,7 @@ def test_a_difference_without_an_error_is_in_the_summary():
 
 def test_settings_and_costs_stand_beside_their_solver():
     section = settings_section([case(AGREE)], {"processor": "abacus"})
-    versions, settings = tables(section_text(section))
+    versions, settings = tables_of(section)
     assert {"what": "processor", "which": "abacus"} in versions
     halfspace, elements = settings
     assert (halfspace["solver"], halfspace["unknowns"], halfspace["seconds"]) == ("half-space", "111", "7.50")

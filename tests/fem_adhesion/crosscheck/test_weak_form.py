@@ -1,10 +1,10 @@
 """The public weak form: the whole curve by full Newton, beside the solvers that share nothing with it."""
 
-import csv
 import json
 
 import numpy as np
 import pytest
+from page_tables import rows_of
 
 import fem_adhesion
 import halfspace
@@ -107,7 +107,7 @@ def test_the_command_writes_what_it_found(curve, tmp_path, monkeypatch, capsys):
     assert cli.main(["curve", "--tabor", "0.8", "--solver", "weak-form", *map(str, options)]) == 0
     assert "weak form: " in capsys.readouterr().out
     solution = json.loads(files[0].read_text())["solutions"]["weak form"]
-    rows = list(csv.DictReader(files[1].read_text().splitlines()))
+    rows = rows_of(files[1])
     event = next(row for row in rows if row["event"] == "pull_off")
     assert float(event["load_R_dgamma"]) == solution["events"]["pull_off"]["load"]
     assert float(event["load_R_dgamma"]) == pytest.approx(halfspace.trace(0.8).event("pull_off").load, rel=1e-3)
@@ -115,9 +115,7 @@ def test_the_command_writes_what_it_found(curve, tmp_path, monkeypatch, capsys):
     assert "stable under fixed grips" in files[2].read_text()
 
 
-@pytest.mark.parametrize(
-    "option", [["--vtk", "x"], ["--other-laws", "morse:3"], ["--points", "9"], ["--stiffness", "1"]]
-)
-def test_what_the_weak_form_has_not_is_refused(option, capsys):
-    assert cli.main(["curve", "--tabor", "1", "--solver", "weak-form", *option]) == 2
-    assert "the weak form gives points and events alone" in capsys.readouterr().err
+@pytest.mark.parametrize("option", ["--vtk x", "--other-laws morse:3", "--points 9", "--stiffness 1"])
+def test_what_the_weak_form_has_not_is_refused(option, refused):
+    words = "the weak form gives points and events alone"
+    refused("curve --tabor 1 --solver weak-form", option, words=words)

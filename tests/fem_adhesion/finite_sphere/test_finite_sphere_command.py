@@ -1,6 +1,5 @@
 """``fem-adhesion finite-sphere`` whole: its quick form read back, its exit codes, and how it ends when it is ended."""
 
-import csv
 import json
 import os
 import re
@@ -12,6 +11,7 @@ from dataclasses import replace
 from html import unescape
 
 import pytest
+from page_tables import rows_of
 from processes import PATIENCE, alive, wait_until
 
 from fem_adhesion import cli
@@ -30,11 +30,6 @@ def quick(whole):
     return done
 
 
-def lines_of(file):
-    with file.open(newline="") as text:
-        return list(csv.DictReader(text))
-
-
 # --- the quick form ---
 
 
@@ -51,7 +46,7 @@ def test_the_quick_study_says_that_it_is_one_and_how_it_went(quick):
 def test_the_table_holds_what_the_solvers_give(quick):
     table = {
         (row["cause"], row["quantity"], row["tabor"], row["radius_ratio"]): row
-        for row in lines_of(quick / "sphere/finite_sphere.csv")
+        for row in rows_of(quick / "sphere/finite_sphere.csv")
     }
     row = table["all", "pull_off_load", "1.0", "300.0"]
     stored = [json.loads(file.read_text()) for file in (quick / "sphere/cases").iterdir()]
@@ -64,7 +59,7 @@ def test_the_table_holds_what_the_solvers_give(quick):
 
 
 def test_the_border_of_the_jumps_is_solved_for(quick):
-    found = {line["R/eps"]: line for line in lines_of(quick / "sphere/first_jumps.csv")}
+    found = {line["R/eps"]: line for line in rows_of(quick / "sphere/first_jumps.csv")}
     assert set(found) == {"half-space", "30", "300", "3000"}
     assert float(found["half-space"]["mu"]) == pytest.approx(0.697214622, abs=float(found["half-space"]["error"]))
     tabors = [float(found[ratio]["mu"]) for ratio in ("30", "300", "3000", "half-space")]
@@ -74,7 +69,7 @@ def test_the_border_of_the_jumps_is_solved_for(quick):
 
 def test_a_figure_is_drawn_or_says_what_it_lacks(quick):
     page = (quick / "sphere/index.html").read_text()
-    for line in lines_of(quick / "sphere/captions.csv"):
+    for line in rows_of(quick / "sphere/captions.csv"):
         drawn = (quick / f"sphere/{line['figure']}.svg").exists()
         assert drawn == bool(line["caption"]) == (not line["why not drawn"])
         assert drawn == (quick / f"sphere/{line['figure']}.png").exists()
@@ -124,13 +119,13 @@ def test_a_study_that_failed_in_part_says_so(tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().out.startswith(said)
     assert f"<strong>{said}.</strong>" in (tmp_path / "out/index.html").read_text()
     assert said in (tmp_path / "out/chart.svg").read_text()
-    (line,) = lines_of(tmp_path / "out/failures.csv")
+    (line,) = rows_of(tmp_path / "out/failures.csv")
     assert (line["status"], line["kind"], line["reason"]) == (
         "refused",
         "ContactTooWide",
         "bonded is stuck; try another",
     )
-    rows = lines_of(tmp_path / "out/finite_sphere.csv")
+    rows = rows_of(tmp_path / "out/finite_sphere.csv")
     assert {(row["status"], row["kind"]) for row in rows if row["cause"] == "grip"} == {("refused", "ContactTooWide")}
 
 
@@ -141,13 +136,10 @@ def test_what_is_beyond_the_limits_is_left_out_and_listed(tmp_path, capsys):
     left = len([model for model in MODELS.values() if {"tabor", "radius_ratio"} <= set(model.inputs)])
     left += 1  # finite_strain_normal, at tabor 1, too
     assert f"{left} cases left out, beyond the limits" in capsys.readouterr().out
-    lines = lines_of(tmp_path / "out/failures.csv")
+    lines = rows_of(tmp_path / "out/failures.csv")
     assert len(lines) == left
     assert {line["status"] for line in lines} == {"left out"}
     assert sum("tabor 10, R/eps 5" in line["case"] for line in lines) == left - 1
-
-
-# --- ended from outside ---
 
 
 @pytest.mark.usefixtures("made_up")

@@ -9,10 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from whole_sphere import surface_deflection
 
 import fem_adhesion
-import halfspace
 from fem_adhesion import Hemisphere, Scene, harmonics
 from halfspace.theories.exact_sphere import RigidSphere
 
@@ -36,84 +34,33 @@ def events_of(tabor, radius_ratio):
     return {name: TABLE[tabor, radius_ratio, name] for name in EVENTS if (tabor, radius_ratio, name) in TABLE}
 
 
-@pytest.mark.parametrize(("tabor", "radius_ratio"), [(0.2, 10), (1, 30)])
-def test_the_table_against_the_sphere_in_legendre_polynomials(tabor, radius_ratio):
-    scene = Scene(tabor, Hemisphere(radius_ratio=radius_ratio, poisson=POISSON))
-    path, table = harmonics.trace(scene, rtol=1e-7), events_of(tabor, radius_ratio)
-    assert path.met
+def require_agreement(path, table):
+    """Events of a path are those of the table within the errors of both."""
     assert set(table) == set(path.events)
     for name, row in table.items():
         event = path.event(name)
         assert abs(event.approach - row["approach"]) <= event.approach_error + row["err_approach"], name
         assert abs(event.load - row["load"]) <= event.load_error + row["err_load"], name
-        if not np.isnan(row["contact_radius"]):
-            assert event.contact_radius == pytest.approx(row["contact_radius"], abs=1e-5)
 
 
-CASES = [(1, 10000)]
-
-
-@pytest.fixture(scope="module", params=CASES, ids=lambda case: f"{case[0]:g}-{case[1]:g}")
-def traced(request):
-    tabor, radius_ratio = request.param
+@pytest.mark.parametrize(("tabor", "radius_ratio"), [(0.2, 10), (1, 30)])
+def test_the_table_against_the_sphere_in_legendre_polynomials(tabor, radius_ratio):
     scene = Scene(tabor, Hemisphere(radius_ratio=radius_ratio, poisson=POISSON))
-    return fem_adhesion.trace(scene, rtol=1e-5), events_of(tabor, radius_ratio)
-
-
-def test_events_are_right_within_estimates(traced):
-    path, table = traced
-    assert set(path.events) == set(table)
+    path, table = harmonics.trace(scene, rtol=1e-7), events_of(tabor, radius_ratio)
+    assert path.met
+    require_agreement(path, table)
     for name, row in table.items():
-        event = path.event(name)
-        assert abs(event.approach - row["approach"]) <= event.approach_error + row["err_approach"], name
-        assert abs(event.load - row["load"]) <= event.load_error + row["err_load"], name
+        radius = pytest.approx(row["contact_radius"], abs=1e-5, nan_ok=True)
+        assert path.event(name).contact_radius == radius or np.isnan(row["contact_radius"])
+
+
+def test_events_are_right_within_estimates():
+    scene = Scene(1.0, Hemisphere(radius_ratio=1e4, poisson=POISSON))
+    path, table = fem_adhesion.trace(scene, rtol=1e-5), events_of(1.0, 1e4)
+    require_agreement(path, table)
+    for name, event in path.events.items():
         assert event.approach_error <= 1e-5 * path.approach_scale, name
         assert name == "zero_load" or event.load_error <= 1e-5 * abs(event.load), name
-
-
-@pytest.fixture(scope="module")
-def half_space():
-    """Events of the half-space under a paraboloid."""
-    return {tabor: halfspace.trace(tabor, rtol=1e-7).events for tabor in (0.2, 1.0, 3.0)}
-
-
-def deviation(half_space, tabor, radius_ratio, name):
-    """Approach and load of the sphere's event less those of the half-space."""
-    row, event = TABLE[tabor, radius_ratio, name], half_space[tabor][name]
-    return np.array([row["approach"] - event.approach, row["load"] - event.load])
-
-
-def logarithm(poisson):
-    """Factor kappa of a point load's deflection beside the half-space's: W/(R E*) [kappa ln(R/r) + constant + ...]."""
-    return (1 - 2 * poisson) ** 2 / (2 * np.pi * (1 - poisson))
-
-
-@pytest.mark.parametrize("tabor", [1.0, 3.0])
-@pytest.mark.parametrize("name", ["jump_on", "jump_off"])
-def test_the_shift_of_a_jump_has_the_bulks_logarithm(half_space, tabor, name):
-    """At a fold d alpha* = mu W s [kappa ln(1/s) + constant + O(s)], s = beta/R = sqrt(mu/rho): fitted to three rho."""
-    ratios = np.array([1e2, 1e3, 1e4])
-    s = np.sqrt(tabor / ratios)
-    shifts = [deviation(half_space, tabor, rho, name)[0] for rho in ratios]
-    fitted = np.linalg.solve(np.stack([-np.log(s), np.ones(3), s], axis=1), shifts / s)
-    assert fitted[0] == pytest.approx(tabor * half_space[tabor][name].load * logarithm(POISSON), rel=0.05)
-
-
-@pytest.mark.parametrize("poisson", [0.2, 0.4999])
-def test_bulk_compliance_is_logarithmic_but_for_rubber(poisson):
-    """Under Gaussian pressures of width b, R = 1: (w(0) - sqrt(pi) b)/W grows by kappa ln 2 as b halves."""
-    excess = []
-    for b in (0.04, 0.02):
-        w = surface_deflection(1.0, poisson, lambda r, b=b: np.exp(-((r / b) ** 2)), np.zeros(1), int(8 / b) + 60)[0]
-        excess.append((w - np.sqrt(np.pi) * b) / (np.pi * b**2))
-    assert excess[1] - excess[0] == pytest.approx(logarithm(poisson) * np.log(2), abs=0.12 * 0.02)
-
-
-@pytest.mark.parametrize("tabor", [0.2, 1.0, 3.0])
-def test_the_pull_off_load_tends_to_the_half_spaces(half_space, tabor):
-    shifts = [abs(deviation(half_space, tabor, rho, "pull_off")[1]) for rho in (10.0, 100.0, 1e3, 1e4)]
-    assert np.all(np.diff(shifts) < 0)
-    assert shifts[-1] < 0.01 * abs(half_space[tabor]["pull_off"].load)
 
 
 def test_a_nearly_rigid_hemisphere_pulls_off_as_the_rigid_one():

@@ -1,13 +1,12 @@
 """The finite sphere's page: its answer, chart and files, and the yield of the body that is taken out of the jumps."""
 
-import csv
 import math
 from dataclasses import replace
 from math import log, pi
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
+from page_tables import rows_of
 from whole_sphere import sphere_operator
 
 from fem_adhesion.common import style
@@ -102,8 +101,8 @@ def test_the_page_answers_and_all_files_are_there(written):
 
 def test_the_table_tells_from_where_on_a_deviation_is_small(written):
     """The law is (1 + mu/2)/rho; at tabor 3 the smallest sphere is refused, and at 0.3 none jumps."""
-    with (written[0] / "safe.csv").open(newline="") as file:
-        lines = {(line["quantity"], line["half-space errs less than"]): line for line in csv.DictReader(file)}
+    table = rows_of(written[0] / "safe.csv")
+    lines = {(line["quantity"], line["half-space errs less than"]): line for line in table}
     for level in (0.1, 0.01, 0.001):
         for tabor in TABORS:
             least = next((f"{rho:g}" for rho in RATIOS if abs(law(tabor, rho)) < level), "none")
@@ -254,9 +253,7 @@ def test_each_cause_compares_the_models_that_differ_by_it(distinct):
 
 def test_the_csv_holds_each_number_with_its_error(distinct, tmp_path):
     write_tables(distinct.rows, tmp_path)
-    with (tmp_path / "finite_sphere.csv").open(newline="") as file:
-        lines = list(csv.DictReader(file))
-    for row, line in zip(distinct.rows, lines, strict=True):
+    for row, line in zip(distinct.rows, rows_of(tmp_path / "finite_sphere.csv"), strict=True):
         for name in ("value", "baseline", "half_space", "deviation"):
             number = getattr(row, name)
             assert (float(line[name]), float(line[f"{name}_error"])) == (number.value, number.error), name
@@ -384,23 +381,12 @@ def test_nothing_is_concluded_from_numbers_that_are_none(tmp_path):
     assert "nan" not in page.partition("<footer>")[0].replace("nancy", "")
 
 
-@pytest.fixture
-def _empty_files(monkeypatch):
-    """Figures are drawn, but what they look like is not written: that is looked at elsewhere."""
-    empty = '<svg xmlns="http://www.w3.org/2000/svg"/>'
-    monkeypatch.setattr(style, "laid_out", lambda figure: figure)
-    monkeypatch.setattr(Figure, "savefig", lambda _, file, **__: file.write_text(empty))
-
-
-@pytest.mark.usefixtures("_empty_files")
-def test_a_half_space_never_good_enough_is_not_said_to_be(tmp_path):
+def test_a_half_space_never_good_enough_is_not_said_to_be(tmp_path, monkeypatch):
+    monkeypatch.setattr(finite_sphere_page, "PICTURES", ())
     finite_sphere_page.write(study_of(lambda _: 5.0), tmp_path)
     page = (tmp_path / "index.html").read_text()
     assert page.count("at no R/ε up to 10000 for all μ from 0.3 to 3") >= 3
     assert "</strong> if R/ε" not in page
-
-
-# --- what a deviation begins with ---
 
 
 # --- the yield of the body ---

@@ -8,7 +8,7 @@ import pytest
 from references import taylor_hood
 from scipy.optimize import brentq
 from scipy.sparse.linalg import spsolve
-from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2
+from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2
 
 from fem_adhesion.elasticity import cells
 from fem_adhesion.elasticity.cells import Cells, cell_stiffness
@@ -18,7 +18,8 @@ from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.finite_strain import body as material
 from fem_adhesion.finite_strain.body import material_body
 from fem_adhesion.finite_strain.problem import finite_strain_problem
-from fem_adhesion.finite_strain.traction import Convention, convention_of, yielded_adhesion
+from fem_adhesion.finite_strain.traction import Convention, columns, convention_of, yielded_adhesion
+from fem_adhesion.mesh import spheres
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from halfspace.elastic import grid
 from halfspace.equilibrium import newton
@@ -42,22 +43,6 @@ def block(degree=3, fine=0.4):
 def problem_of(space, stretch, poisson=0.3, convention=VERTICAL, pressure=None, tabor=1.0, far_field=clamped):
     body = material_body(space, poisson, stretch, pressure)
     return finite_strain_problem(body, far_field(space, poisson), tabor, convention=convention)
-
-
-def hemisphere(R, fine=0.6, flat=2.4):
-    """Quadratic cells: a square bent to the quarter disc |Z| < 2R, and by Z/(1 + i Z/2R) to the hemisphere."""
-    near, depths = (grid.graded(0.0, fine, 0.8 * R, until=until) for until in (flat, fine))
-    rim = np.linspace(0.8 * R, 2 * R, 7)[1:]
-    flat_mesh = MeshQuad2.from_mesh(MeshQuad.init_tensor(np.append(near, rim), np.append(depths, rim)))
-    a, d = flat_mesh.doflocs
-    longer, t = np.maximum(a, d), (np.maximum(a, d) / (2 * R)) ** 2
-    Z = (a - 1j * d) * (1 - t + t * longer / np.hypot(a, d).clip(1e-300))
-    image = Z / (1 + 0.5j * Z / R)
-    mesh = MeshQuad2(np.array([image.real, image.imag]), flat_mesh.t)
-    facets = mesh.boundary_facets()
-    r, z = mesh.p[:, mesh.facets[:, facets]]
-    axis, far = np.all(r < 1e-9 * R, axis=0), np.all(np.abs(z + R) < 1e-9 * R, axis=0)
-    return mesh.with_boundaries({"axis": facets[axis], "far": facets[far], "contact": facets[~axis & ~far]})
 
 
 def entered(problem, gaps=(2.0, 1.0, 0.5, 0.2, 0.0)):
@@ -323,7 +308,8 @@ def events_of(problem, unknowns):
 def sphere():
     """Linear events of a hemisphere, condensed; and the problem at finite strain."""
     R, tabor, nu = 10.0, 1.0, 0.3
-    space = Space(hemisphere(R), ElementQuadP(3))
+    lines, depths = (grid.graded(0.0, 0.6, size * R, until=2.4) for size in (spheres.CORE, spheres.DEPTH))
+    space = Space(spheres.hemisphere(R, lines, depths), ElementQuadP(3))
     condensed = condense(space, nu, far_field=sliding)
     events = events_of(ContactProblem(condensed.operator, tabor, profile=SphereSurface(R)), condensed.unknowns)
     body, exterior = material_body(space, nu, 1 / R), sliding(space, nu)
@@ -410,6 +396,12 @@ def test_the_blend_is_the_mean_of_both_energies_by_their_parts():
     energies = [replace(blended, convention=c).energy(x) for c in (REFERENCE, NORMAL)]
     assert abs(energies[1] - energies[0]) > 1e-3
     assert blended.energy(x) == pytest.approx(4 / 7 * energies[0] + 3 / 7 * energies[1], rel=1e-12)
+
+
+def test_a_convention_fades_at_an_equator_in_one_spacing():
+    """With the height d above the equator's plane, in eps, to 1 - exp(-d^2): as d^2 next to it."""
+    depths = np.array([0.0, 1e-3, 0.5, 1.0, 3.0, np.inf])
+    assert columns(depths) == pytest.approx([0.0, 1e-6, 0.22119922, 0.63212056, 0.99987659, 1.0], rel=1e-6)
 
 
 def deepening(law, M):

@@ -20,16 +20,7 @@ from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, Question
 from fem_adhesion.finite_strain import scene as finite_strain_scene
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
-from fem_adhesion.finite_strain.scene import (
-    FARTHEST,
-    LITTLE,
-    NUMBERS,
-    ScenesBody,
-    Stages,
-    Windows,
-    find_jumps,
-    trace,
-)
+from fem_adhesion.finite_strain.scene import FARTHEST, LITTLE, NUMBERS, ScenesBody, Stages, Windows, find_jumps, trace
 from fem_adhesion.finite_strain.settings import USUAL
 from fem_adhesion.finite_strain.traction import Convention
 from halfspace.accuracy.standing import Standing

@@ -1,8 +1,7 @@
 """The whole study as a user runs it, once, for all tests of this folder."""
 
-import csv
-
 import pytest
+from page_tables import rows_of
 from whole_runs import GREENWOOD
 
 from fem_adhesion.greenwood import claims
@@ -35,4 +34,4 @@ def report(ran):
 @pytest.fixture(scope="session")
 def rows(report):
     """Read a table of the directory."""
-    return lambda stem: list(csv.DictReader((report / f"{stem}.csv").read_text().splitlines()))
+    return lambda stem: rows_of(report / f"{stem}.csv")
