@@ -157,7 +157,7 @@ class Cluster:
         path = os.pathsep.join([*places, os.environ.get("PYTHONPATH", "")])
         command = [sys.executable, "-m", f"distributed.cli.{program}", *options, "--no-dashboard"]
         with (self.folder / "log").open("a") as log:
-            own = {**os.environ, "PYTHONPATH": path}
+            own = {**os.environ, "PYTHONPATH": path, "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"}
             return subprocess.Popen(command, env=own, stdout=log, stderr=log, start_new_session=True)
 
     def add_worker(self):
