@@ -20,8 +20,9 @@ How independent the two solvers are:
   and end, and the infinite one.
 * Where cells begin and end: the same radial lines; error estimates by refinement on each side.
 * All that is shared is checked by a weak form with its own law, profile, energy and Newton's method, on
-  its own mesh. Lengths and profiles are from formulas of its own (`definitions`); of laws but the 3-9 it is told the
-  potential alone, of profiles of the user's the height. It imports nothing of the solvers. Each event of the finite
+  a mesh of its own, for which it takes of the solvers the function alone that grades cells. Lengths and profiles are
+  from formulas of its own (`definitions`); of laws but the 3-9 it is told the potential alone, of profiles of the
+  user's the height. It shares nothing else with them. Each event of the finite
   elements is put into it: do the gaps balance, do the tensions across them make the load, are central gap and contact
   radius those of the equilibrium nearby, does the approach turn along the load at a fold? It comes to jump_on on a way
   of its own, from undeformed surfaces far apart, and tells the jumps apart by the side on which states are

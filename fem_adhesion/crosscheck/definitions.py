@@ -18,7 +18,7 @@ import numpy as np
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, Row, of_values
 from fem_adhesion.crosscheck.settings import USUAL
 from fem_adhesion.scene import Scene
-from fem_adhesion.weak_form.contact import Heights, paraboloid, sphere
+from fem_adhesion.weak_form.contact import Heights, paraboloid
 from halfspace.laws import Dlvo, Dugdale, Exponential, Law, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Paraboloid, Power, RoundedPunch, Sphere
 from halfspace.values import Array, Estimate
@@ -114,13 +114,18 @@ HEIGHTS: Mapping[type, Callable[[Any, Array], Array]] = {
 }
 
 
+def _sphere(r: Array, R: float) -> Array:
+    """Height in beta^2/R over radii in beta of a sphere of radius R (beta): R (R - sqrt(R^2 - r^2))."""
+    return np.asarray(r**2 / (1 + np.sqrt((1 - r / R) * (1 + r / R))))
+
+
 def heights(scene: Scene) -> Heights:
     """Undeformed gap in beta^2/R over radii in beta; those of two spheres add. What is not known here tells its own."""
     shape, (R, _) = scene.shape, lengths(scene)
     if isinstance(shape, Sphere):
         over = shape.counter_radius
         radii = [R * (1 + 1 / over), R * (1 + over)] if math.isfinite(over) else [R]
-        return lambda r: sum((R / each * sphere(r, each) for each in radii), 0 * r)
+        return lambda r: sum((R / each * _sphere(r, each) for each in radii), 0 * r)
     known = HEIGHTS.get(type(shape))
     return (lambda r: known(shape, r)) if known else scene.surface.height
 

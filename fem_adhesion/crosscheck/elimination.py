@@ -39,8 +39,7 @@ def rows(scene: Scene, path: EquilibriumPath) -> Iterator[Row]:
     mesh, degree = block_grid(*USUAL.block), USUAL.block_degree
     contact = Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), scene.tabor)
     start = contact.undeformed(approach)
-    whole = newton(contact, start, at_approach(start))
-    whole = newton(contact, whole.y, at_approach(start))  # its Newton ends at the square of its last step
+    whole = newton(contact, start, at_approach(approach))
     body = condense(Space(mesh, ElementQuadP(degree)), scene.poisson, far_field=clamped, points=2 * degree + 2)
     condensed = ContactProblem(body.operator, scene.tabor)
     part = condensed_newton.solve(condensed, condensed.undeformed(approach), condensed_newton.approach(approach))

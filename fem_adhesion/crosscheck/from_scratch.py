@@ -16,6 +16,7 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 import numpy as np
+from scipy.optimize import newton as secant
 
 import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, of_values
@@ -25,7 +26,7 @@ from fem_adhesion.crosscheck.weak_bodies import FineAt, contacts, sharpness
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.newton import Equilibrium, at_approach, at_load, from_afar, newton, turning_point
+from fem_adhesion.weak_form.newton import Equilibrium, at_approach, at_load, newton
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -184,31 +185,32 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
     event, located = path.events[name], path.stages[-1][name]
     radius, reach = _places(located)
     coarse, fine = (_state(contact(radius, reach), located) for contact in (on_coarse, on_fine))
-    before = _state(fine.at.contact, path.stages[-2][name])  # how much of ripples a stiff law makes
+    before = _state(fine.contact, path.stages[-2][name])  # how much of ripples a stiff law makes
     approach, load = map(event.estimate, ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
-    balances, forces = (coarse.balance, fine.balance), (coarse.at.load, fine.at.load)
     balanced = Estimate(0.0, approach.error + abs(before.balance - fine.balance))
-    yield Compared(f"{name} balance", "eps", balances, balanced, width)
+    yield Compared(f"{name} balance", "eps", (coarse.balance, fine.balance), balanced, width)
     if name != "zero_load":
-        doubt = Estimate(0.0, abs(before.at.load - fine.at.load))
-        yield Compared(f"{name} attraction", "R dgamma", forces, load + doubt, force)
+        doubt = Estimate(0.0, abs(before.attraction - fine.attraction))
+        yield Compared(f"{name} attraction", "R dgamma", (coarse.attraction, fine.attraction), load + doubt, force)
     a, b = _beside(name, coarse), _beside(name, fine)
     for quantity, unit in (("central_gap", "eps"), ("contact_radius", "beta")):
         known, both = event.estimate(quantity), (getattr(a, quantity, None), getattr(b, quantity, None))
         if not all(value is not None and math.isnan(value) for value in (*both, known.value)):
-            gap, size = quantity == "central_gap", USUAL.pointwise * (1 + abs(known.value))
-            of_gap = (getattr(a, "ripple", 0.0), getattr(b, "ripple", 0.0)) if gap else (0.0, 0.0)
-            yield Compared(f"{name} {quantity}", unit, both, known, size, of_gap)
+            ripples = (_ripple(a), _ripple(b)) if quantity == "central_gap" else (0.0, 0.0)
+            size = USUAL.pointwise * (1 + abs(known.value))
+            yield Compared(f"{name} {quantity}", unit, both, known, size, ripples)
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
     smooth, sharp = name == "jump_on", sharpness(scene, radius) > USUAL.sharp
     if name in FOLDS and (smooth or not sharp):
         side = None if b is None else _stable_side(b)
         yield Compared(f"{name} stable side", "", (side, side), Estimate(FOLDS[name], 0.0), 1.0)
-    a, b = (_from_afar(scene, each) for each in (coarse, fine)) if smooth else (a, b)
-    first = _turn(name, a) if smooth else a
-    second = _turn(name, b) if smooth or (name != "zero_load" and not sharp) else b
-    approaches, loads = ((getattr(first, of, None), getattr(second, of, None)) for of in ("approach", "load"))
+    if smooth:
+        a, b = (_found(_from_afar, scene.scales.separated_approach, state) or None for state in (coarse, fine))
+        a = _turn(name, a)
+    if smooth or (name != "zero_load" and not sharp):
+        b = _turn(name, b)
+    approaches, loads = ((getattr(a, of, None), getattr(b, of, None)) for of in ("approach", "load"))
     if name != "pull_off":
         yield Compared(f"{name} approach", "eps", approaches, approach, width)
     if name in ("pull_off", "jump_on"):
@@ -226,20 +228,27 @@ def _stable_side(state: Equilibrium) -> float:
     else is no jump.
     """
     for step in np.array(USUAL.aside) * (1 + abs(state.load)):
-        below, above = (_found(state.past, d, under_load=False) for d in (-step, step))
+        below, above = (_found(state.at_load, state.load + d) for d in (-step, step))
         if below and above:
             ways = below.unstable, above.unstable
             return float(ways[0] - ways[1]) if min(ways) == 0 else math.nan
     return math.nan
 
 
-def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
-    """Equilibrium at the load of a fold that is reached from undeformed surfaces; None if no fold is there."""
-    near = state.at.approach - USUAL.near * (1 + abs(state.at.approach))
-    found = _found(from_afar, state.at.contact, scene.scales.separated_approach, near)
-    if found is None or abs(found.load - state.load) >= USUAL.away * (1 + abs(state.load)):
+def _from_afar(far: float, fold: StateInWeakForm) -> Equilibrium | None:
+    """Equilibrium at the load of a fold that is reached from undeformed surfaces; None if no fold is there.
+
+    The way left shrinks by the same part in each step, so that near the fold each changes the state as much.
+    """
+    contact, approach = fold.contact, float(fold.y[-1])
+    near = USUAL.near * (1 + abs(approach))
+    first, *others = approach - np.geomspace(approach - far, near, USUAL.steps)
+    state = newton(contact, contact.undeformed(first), at_approach(first))
+    for place in others:
+        state = state.at_approach(place)
+    if abs(state.load - fold.load) >= USUAL.away * (1 + abs(fold.load)):
         return None
-    return _found(newton, state.at.contact, found.y, at_load(state.at.contact, state.load))
+    return newton(contact, state.y, at_load(contact, fold.load))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -250,9 +259,15 @@ class StateInWeakForm(Valued):
     eps, weighted by the tension.
     """
 
-    at: Equilibrium
+    contact: Contact
+    y: Array
     load: float
     balance: float
+
+    @property
+    def attraction(self) -> float:
+        """Load of the tensions across these gaps by the weak form."""
+        return self.contact.load(self.y)
 
 
 def _places(event: Located) -> tuple[float, float]:
@@ -270,10 +285,11 @@ def _places(event: Located) -> tuple[float, float]:
 def _state(contact: Contact, event: Located) -> StateInWeakForm:
     """Take over the gaps."""
     approach, load = (float(value) for value in event.point.observables[:2])
-    h = 1 + _gaps(event, contact)
-    weight = np.abs(contact.law.tension(h))
-    off = contact.body.integral((contact.left_by(contact.displaced(h), approach) - h) * weight)
-    return StateInWeakForm(Equilibrium(contact, np.append(h, approach)), load, off / contact.body.integral(weight))
+    body, h = contact.body, 1 + _gaps(event, contact)
+    tension = contact.law.tension(h)
+    off = contact.left_by(body.displaced(contact.tabor * tension), approach) - h
+    balance = body.integral(off * np.abs(tension)) / body.integral(np.abs(tension))
+    return StateInWeakForm(contact, np.append(h, approach), load, balance)
 
 
 def _gaps(event: Located, contact: Contact) -> Array:
@@ -284,24 +300,55 @@ def _gaps(event: Located, contact: Contact) -> Array:
     return np.where(yields & (radii < extent), gaps_at(event, radii), beyond)
 
 
-def _turn(name: str, state: Equilibrium | None) -> Equilibrium | None:
-    """Load and approach of the event in the weak form, or None where there is none nearby."""
-    if state is None:
-        return None
-    return _found(turning_point, state, under_load=name == "pull_off")
-
-
 def _beside(name: str, state: StateInWeakForm) -> Equilibrium | None:
     """Equilibrium at the approach of pull-off, or at the load of another event: what turns there is stationary."""
-    contact, y = state.at.contact, state.at.y
-    to = at_approach(y) if name == "pull_off" else at_load(contact, state.load * (name != "zero_load"))
-    return _found(newton, contact, y, to)
+    load = 0.0 if name == "zero_load" else state.load
+    to = at_approach(float(state.y[-1])) if name == "pull_off" else at_load(state.contact, load)
+    return _found(newton, state.contact, state.y, to)
+
+
+def _turn(name: str, state: Equilibrium | None) -> Equilibrium | None:
+    """Event in the weak form near a state, found by the secant; None where there is none.
+
+    At a fold d(alpha)/dW vanishes along the load, at the load's own extremum dW/d(alpha) does along the approach.
+    """
+    if state is None:
+        return None
+    along, place = (state.at_approach, state.approach) if name == "pull_off" else (state.at_load, state.load)
+    step = USUAL.turn * (1 + abs(place))
+
+    def slope(there: float) -> float:
+        stiffness = along(there).stiffness
+        return stiffness if name == "pull_off" else 1 / stiffness
+
+    def turned() -> Equilibrium | None:
+        how: dict[str, Any] = {"tol": USUAL.turned * step, "maxiter": USUAL.tries, "full_output": True, "disp": False}
+        root, found = secant(slope, place, x1=place + step, **how)
+        return along(float(root)) if found.converged else None
+
+    return _found(turned)
+
+
+def _ripple(state: Equilibrium | None) -> float:
+    """What gaps next to the axis have in eps that a polynomial of the radius squared has not.
+
+    Or displacements, whichever have less: the gaps are smooth in contact, the displacements apart, where a profile
+    need not be.
+    """
+    if state is None:
+        return 0.0
+    body = state.contact.body
+    first = np.argsort(body.radii)[: USUAL.innermost]
+    x = body.radii[first] ** 2
+    fields = state.y[first], state.contact.tabor * body.rise(state.u)[first]
+    return min(float(np.max(np.abs(f - np.polynomial.Polynomial.fit(x, f, 2)(x)))) for f in fields)
 
 
 def _energy_released(scene: Scene, on: FineAt, path: EquilibriumPath) -> float | None:
     """Potential energy from undeformed surfaces that deform far apart to the equilibrium in contact at no approach."""
     apart, touching = (path.stages[-1][name] for name in ("separated", "zero_approach"))
     first, second = (on(*_places(end)) for end in (apart, touching))
-    starts = first.undeformed(scene.scales.separated_approach), np.append(1 + _gaps(touching, second), 0.0)
-    before, after = (_found(newton, each, y, at_approach(y)) for each, y in zip((first, second), starts, strict=True))
+    far = scene.scales.separated_approach
+    before = _found(newton, first, first.undeformed(far), at_approach(far))
+    after = _found(newton, second, np.append(1 + _gaps(touching, second), 0.0), at_approach(0.0))
     return before.energy - after.energy if before and after else None

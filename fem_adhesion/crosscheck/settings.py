@@ -42,15 +42,25 @@ class Settings:
     change: float = 0.3  # of that approach, in eps
     # Steps beside a fold, in 1 + the load: more than both sources differ by there, or as far as states are found.
     aside: tuple[float, ...] = tuple(1e-2 / 2.0**n for n in range(8))
+    # Of the secant to a turning point: its first step in 1 + the size of what it goes along, the part of that within
+    # which the point is found, and the most steps.
+    turn: float = 5e-4
+    turned: float = 1e-3
+    tries: int = 10
+    innermost: int = 20  # points next to the axis whose gaps show ripples, about those of two cells
     near: float = 3e-3  # where the way from afar ends before a fold, in 1 + the approach
+    steps: int = 7  # equilibria on that way; 4 to 20 lead to the same, by laws of all kinds, at tabor 1 to 20
     away: float = 0.2  # how far off that fold may be, in 1 + the load
     tiny: float = 0.1  # radius of a contact about whose edge cells are finest, in the radius of the attraction
     opening: float = 0.49  # part of a gap that opens in the radius of the attraction by the 3-9 law
     closest: float = 0.1  # least gap that counts there, in eps
 
     # Bodies of the weak form
-    fineness: tuple[tuple[int, float], ...] = ((3, 10.0), (4, 30.0), (5, 90.0))  # half-spaces: degree, box in radii
+    fineness: tuple[tuple[int, float], ...] = ((3, 20.0), (4, 60.0), (5, 180.0))  # half-spaces: degree, box in radii
     wide: float = 2.5  # contact radius beyond which spikes of tension are narrower in it than on paraboloids
+    half_space_growth: float = 3.0  # ratio of neighbouring cells of a half-space
+    within: float = 0.3  # longest cell within the reach of the attraction, as a part of that
+    closing: float = 1e-6  # least gap in eps that counts as one
     tip: float = 1e-4  # what the cell under a sharp tip may leave
     farther: float = 10.0  # times that a box is larger for an attraction that falls slowly
     degrees: tuple[int, ...] = (3, 4, 5)  # of a body with a length; one more where nothing else checks it

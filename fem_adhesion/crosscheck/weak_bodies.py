@@ -12,6 +12,7 @@ from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
+from scipy import sparse
 from skfem import MeshTri
 
 from fem_adhesion.bodies.body import Body as ElasticBody
@@ -23,16 +24,7 @@ from fem_adhesion.discretise import finest_length
 from fem_adhesion.mesh.file import is_straight, refined
 from fem_adhesion.mesh.spheres import with_contact_to
 from fem_adhesion.scene import Scene
-from fem_adhesion.weak_form.body import (
-    TRIANGLES,
-    Body,
-    discretise,
-    fine_within,
-    half_space,
-    on_ground,
-    opposed,
-    with_rigid,
-)
+from fem_adhesion.weak_form.body import TRIANGLES, Body, box, discretise
 from fem_adhesion.weak_form.contact import Contact, Law, lennard_jones
 from halfspace.elastic import grid
 from halfspace.elastic.layers import surface_compliance
@@ -56,7 +48,7 @@ def law_of(scene: Scene) -> Law:
     law = scene.law
     if law == LENNARD_JONES:
         return Law(lennard_jones)
-    room = float(law.room(np.array(-1.0)))
+    room = max(float(law.room(np.array(-1.0))), USUAL.closing)
     known = numbers_of(law)
     return Law(lambda h: law.energy(h - 1, 1.0), known.stiffness**-0.5, room, 1 + known.edge)
 
@@ -92,7 +84,7 @@ def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float, rea
     first = scene.surface.first_cell(USUAL.tip) / radius  # under a tip that needs one
     tip = float(2.0 ** np.floor(np.log2(first))) if np.isfinite(first) else np.inf
     reach = float(2.0 ** np.ceil(np.log2(reach / radius)))
-    body = _half_space(_finest(scene, radius), size, int(degree), scene.poisson, tip, reach)
+    body = half_space(_finest(scene, radius), size, int(degree), scene.poisson, tip, reach)
     return Contact(body.scaled(radius), scene.tabor, heights(scene), law_of(scene))
 
 
@@ -101,7 +93,53 @@ def _finest(scene: Scene, radius: float) -> float:
     return float(0.04 * 3.0 ** -max(0.0, np.ceil(np.log(sharpness(scene, radius) ** 2 / 4) / np.log(3))))
 
 
-_half_space = lru_cache(maxsize=8)(half_space)
+@lru_cache(maxsize=8)
+def half_space(
+    finest: float, size: float, degree: int, poisson: float, tip: float = np.inf, reach: float = 1.0
+) -> Body:
+    """Box of a half-space as wide and deep as its size, whose cells grow from `finest` at radius 1 of the surface on.
+
+    They are fine up to the radius `reach`; under a sharp tip the one on the axis is `tip` long, or less.
+
+    It stands on a spring that yields as what is beyond would: Hertz's pressure sqrt(1 - r^2), of the load 2 pi/3, does
+    the work 4 pi^2/15 on a half-space.
+    """
+    growth = USUAL.half_space_growth
+    lines = grid.graded(1.0, finest, size, growth=growth, until=1 + 2 * finest)
+    r = _fine_within(reach, grid.towards_axis(lines, tip, growth))
+    z = grid.geometric(size, min(finest, tip), growth)[1:]
+    body = discretise(box(r, z), degree, [(poisson, 1.0)], plate=True)
+    pressure = np.sqrt(np.maximum(1 - body.radii**2, 0))
+    return _with_rigid(_on_ground(body, pressure, 2 * np.pi / 3, 4 * np.pi**2 / 15))
+
+
+def _fine_within(reach: float, lines: Array) -> Array:
+    """Ends of cells, cut into equal parts where they are longer than a part of a distance within it."""
+    counts = np.where(lines[:-1] < reach, np.ceil(np.diff(lines) / (USUAL.within * reach)), 1).astype(int)
+    cells = zip(lines[:-1], lines[1:], counts, strict=True)
+    return np.append(np.concatenate([np.linspace(a, b, n, endpoint=False) for a, b, n in cells]), lines[-1])
+
+
+def _on_ground(body: Body, pressure: Array, load: float, work: float) -> Body:
+    """A body on a plate, on a spring with which a pressure of this load does the work that it does on a half-space."""
+    missed = 1 + (work - body.integral(pressure * body.rise(body.displaced(pressure)))) / load**2
+    stiffness = body.stiffness.copy()
+    stiffness[-1, -1] += 1 / missed - 1
+    return replace(body, stiffness=stiffness)
+
+
+def _with_rigid(body: Body, end: float = np.inf) -> Body:
+    """Let the surface go on beyond the mesh to a radius: points that attract and do not yield.
+
+    They are of Gauss's rule in s on r = rim/s^4, as little is far away.
+    """
+    first = (body.rim / end) ** 0.25
+    s, ds = np.polynomial.legendre.leggauss(40)
+    s, ds = 1 + (s - 1) * (1 - first) / 2, ds * (1 - first) / 2
+    r = body.rim / s**4
+    values = sparse.vstack([body.values, sparse.csr_array((r.size, body.values.shape[1]))], format="csr")
+    area, depths = np.append(body.area, 2 * np.pi * r**2 * 4 * ds / s), np.append(body.depths, 0 * r)
+    return replace(body, values=values, radii=np.append(body.radii, r), area=area, depths=depths)
 
 
 # Bodies with a length
@@ -140,22 +178,27 @@ def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) 
     outer, coordinate = scene.body.layout(R, replace(how, rings=0) if scene.counter else how)
     length = finest_length(scene, how)
     lines = grid.graded(coordinate.of(radius), length, float(outer[0]), growth=USUAL.growth)
-    core = fine_within(
-        coordinate.of(reach), grid.towards_axis(lines, scene.surface.first_cell(USUAL.tip), USUAL.growth)
-    )
+    lines = grid.towards_axis(lines, scene.surface.first_cell(USUAL.tip), USUAL.growth)
+    core = _fine_within(coordinate.of(reach), lines)
     mesh = scene.body.mesh(R, core, length, how)
-    if scene.counter is None:
+    if scene.counter:
+        end, other = float(coordinate.radius(core[-1:])[0][0]), scene.counter
+        meshes = (scene.body, mesh), (other, other.facing(bodies[1], core, length, R, how))
+        first, second = (_standing(one, with_contact_to(its, end), degree) for one, its in meshes)
+        body = _opposed(first, second, scene.share or 0.0)
+    else:
         body = _standing(scene.body, mesh, degree)
-        body = with_rigid(body, *_flat_rim(body.rim, R)) if scene.body.layered else body
-        return Contact(body, scene.tabor, heights(scene), law_of(scene))
-    end, other = float(coordinate.radius(core[-1:])[0][0]), scene.counter
-    meshes = mesh, other.facing(bodies[1], core, length, R, how)
-    first, second = (
-        _standing(body, with_contact_to(one, end), degree)
-        for body, one in zip((scene.body, other), meshes, strict=True)
-    )
-    body = with_rigid(opposed(first, second, scene.share or 0.0), *_rim(first.rim, R))
+    # Of a pair what lies between the last cell and the equator, of strata what lies beyond those that yield.
+    body = _with_rigid(body, R) if scene.counter or scene.body.layered else body
     return Contact(body, scene.tabor, heights(scene), law_of(scene))
+
+
+def _opposed(first: Body, second: Body, share: float) -> Body:
+    """Two bodies that face each other at points of the same radii, the second with this share of the compliance."""
+    a, b = (np.argsort(body.radii) for body in (first, second))
+    values = sparse.csr_array(sparse.hstack([first.values[a], second.values[b]]))
+    stiffness = sparse.csc_array(sparse.block_diag([first.stiffness / (1 - share), second.stiffness / share]))
+    return Body(stiffness, values, first.radii[a], first.area[a], first.depths[a], first.rim)
 
 
 def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float) -> float:
@@ -180,23 +223,4 @@ def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:
     # On a half-space (1 - r^2/e^2)^(3/2), of the load 2 pi e^2/5, does the work 4 pi^2 e^3/35.
     e = body.rim
     pressure = np.maximum(1 - (body.radii / e) ** 2, 0) ** 1.5
-    return on_ground(body, pressure, 2 * np.pi * e**2 / 5, 4 * np.pi**2 * e**3 / 35)
-
-
-def _flat_rim(begin: float, end: float, points: int = 40) -> tuple[Array, Array]:
-    """Radii and parts of dA between two radii on a plane, by Gauss's rule in log(r); if they are the same, of no area.
-
-    There are strata beyond those that yield, see `Stratified.layout`.
-    """
-    t, w = np.polynomial.legendre.leggauss(points)
-    half = float(np.log(end / begin)) / 2
-    r = begin * np.exp(half * (1 + t))
-    return r, 2 * np.pi * r**2 * half * w
-
-
-def _rim(begin: float, end: float, points: int = 12) -> tuple[Array, Array]:
-    """Radii and parts of dA between two radii, by Gauss's rule in the angle sin(theta) = r/end."""
-    t, w = np.polynomial.legendre.leggauss(points)
-    first = float(np.arcsin(begin / end))
-    theta, d_theta = first + (np.pi / 2 - first) * (1 + t) / 2, (np.pi / 2 - first) * w / 2
-    return end * np.sin(theta), 2 * np.pi * end**2 * np.sin(theta) * np.cos(theta) * d_theta
+    return _on_ground(body, pressure, 2 * np.pi * e**2 / 5, 4 * np.pi**2 * e**3 / 35)

@@ -17,11 +17,10 @@ The curve is followed through its folds by a number that does not turn back ther
 the axis before there is one. It is prescribed by a further equation, with alpha as a further unknown. Events are roots
 along it: d(alpha) = 0 at jump_on and jump_off, dW = 0 at pull_off, W = 0 at zero_load.
 
-In the order of reading: `body` (the forms, the mesh, what holds a body), `contact` (law, profile, gaps, load, energy),
-`newton` (Newton's method with a border, equilibria, where they turn), `curve` (the path, events, a scene's curve with
-its errors), `settings` (numbers of the algorithms). The check of the solvers
-(`fem_adhesion.crosscheck.from_scratch`) goes the same road up to `newton`. Bodies with a length of their own come to it
-with the meshes of the solver that it checks, see `fem_adhesion.crosscheck.weak_bodies`.
+In the order of reading: `body` (the form, a mesh, its contact surface), `contact` (law, profile, gaps, load, energy),
+`newton` (Newton's method with a border, equilibria), `curve` (the path, events, a scene's curve with its errors). The
+check of the solvers (`fem_adhesion.crosscheck.from_scratch`) goes the same road up to `newton`, on bodies that are made
+in `fem_adhesion.crosscheck.weak_bodies`.
 
 The room checks the solvers, so it shares no physics with them: it imports NumPy, SciPy and scikit-fem, and of the house
 exceptions, limits of the inputs, containers of results, and the parts by which a scene is known.

@@ -12,6 +12,8 @@ from fem_adhesion.weak_form.body import Array, Body
 from halfspace.values import Valued
 
 Heights = Callable[[Array], Array]
+FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840  # weights of differences of eighth order
+SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
 
 # The law
 
@@ -28,12 +30,12 @@ class Law:
 
     potential: Callable[[Array], Array]
     grain: float = 0.25
-    room: float = 0.0
+    room: float = 1e-6
     edge: float = 3 ** (1 / 6)
 
     def size(self, h: Array) -> Array:
         """Size by which changes of a gap are measured; a start may have surfaces that overlap."""
-        return np.maximum(np.abs(h), max(self.room, CLOSEST))
+        return np.maximum(np.abs(h), self.room)
 
     def tension(self, h: Array) -> Array:
         """Return sigma = dw/dh in dgamma/eps."""
@@ -44,23 +46,14 @@ class Law:
         return self._difference(h, SECOND, 2)
 
     def _difference(self, h: Array, weights: Array, order: int) -> Array:
-        """Difference of eighth order at steps that are small beside both the gap and what the tension varies over."""
-        d = STEP * self.grain * self.size(h)
-        places = np.arange(-(weights.size // 2), weights.size // 2 + 1)
-        return np.asarray(sum(w * self.potential(h + n * d) for n, w in zip(places, weights, strict=True)) / d**order)
-
-
-STEP, CLOSEST = 4e-3, 1e-6  # of a gap and its grain; the least gap in eps that counts as one
-FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
-SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
+        """Difference at steps that are small beside both the gap and what the tension varies over."""
+        d = 4e-3 * self.grain * self.size(h)
+        return np.asarray(sum(w * self.potential(h + n * d) for n, w in enumerate(weights, -4)) / d**order)
 
 
 def lennard_jones(h: Array) -> Array:
     """Potential of the 3-9 law."""
     return 8 / 3 * (h**-8 / 8 - h**-2 / 2)
-
-
-LENNARD_JONES = Law(lennard_jones)
 
 
 # The profile
@@ -69,11 +62,6 @@ LENNARD_JONES = Law(lennard_jones)
 def paraboloid(r: Array) -> Array:
     """Height z of the undeformed surface over its pole in beta^2/R, at radii in beta."""
     return r**2 / 2
-
-
-def sphere(r: Array, R: float) -> Array:
-    """The same of a sphere of radius R (beta): R (R - sqrt(R^2 - r^2))."""
-    return np.asarray(r**2 / (1 + np.sqrt((1 - r / R) * (1 + r / R))))
 
 
 # The contact
@@ -91,12 +79,7 @@ class Contact(Valued):
     body: Body
     tabor: float
     heights: Heights = paraboloid
-    law: Law = LENNARD_JONES
-
-    @property
-    def sharpness(self) -> float:
-        """Tabor parameter of a contact by the 3-9 law whose edge is as sharp."""
-        return self.tabor * LENNARD_JONES.grain / self.law.grain
+    law: Law = Law(lennard_jones)
 
     @cached_property
     def height(self) -> Array:
@@ -115,13 +98,9 @@ class Contact(Valued):
         """W in R dgamma, positive in compression, of a state."""
         return -self.tabor * self.body.integral(self.law.tension(y[:-1]))
 
-    def load_row(self, y: Array) -> Array:
-        """Derivative of the load by the state, (q + 1,)."""
-        return -self.tabor * np.append(self.body.area * self.law.slope(y[:-1]), 0.0)
-
-    def displaced(self, h: Array) -> Array:
-        """Displacements by the tensions of given gaps, whether or not these leave the gaps."""
-        return self.body.displaced(self.tabor * self.law.tension(h))
+    def load_rate(self, y: Array, rate: Array) -> float:
+        """Change of the load with a state that changes at a rate (q + 1,)."""
+        return -self.tabor * self.body.integral(self.law.slope(y[:-1]) * rate[:-1])
 
     def energy(self, u: Array, approach: float) -> float:
         """Potential energy in R dgamma eps, less that of the undeformed surfaces in touch, which may be infinite."""

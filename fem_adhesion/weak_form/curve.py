@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -13,13 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from scipy.optimize import newton as secant
 
 from fem_adhesion.scene import Scene, require_scene
-from fem_adhesion.weak_form.body import Array, box, discretise, growing
+from fem_adhesion.weak_form.body import Array, box, discretise
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.newton import Equilibrium, along, even, gap_at, newton, on_axis
-from fem_adhesion.weak_form.settings import USUAL, Settings
+from fem_adhesion.weak_form.newton import Equilibrium, at_gap, even, newton
 from halfspace.equilibrium.events import Event, Tolerance, points_of, tolerance_told
 from halfspace.errors import InputError, NotConverged, tried
 from halfspace.laws import LENNARD_JONES
@@ -34,32 +32,29 @@ LIMITS = {"tabor": (0.02, 5.0), "poisson": (0.0, 0.49), "rtol": (1e-4, 0.1), "to
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Point(Valued):
-    """An equilibrium at the place s of a `Path`.
-
-    The rates (3,) are those of approach, load and central gap along the path, per change of approach and central gap;
-    it is stable under fixed grips or not.
-    """
+    """An equilibrium at the place s of a `Path`."""
 
     s: float
     state: Equilibrium
-    rates: Array
-    stable: bool
+
+    @cached_property
+    def rates(self) -> Array:
+        """Of approach, load and central gap along the path, (3,), per change of approach and central gap."""
+        state = self.state
+        change = even(state.contact.body, state.rate[:-1])
+        rates = np.array([1.0, state.stiffness, change(0.0)])
+        return np.asarray(-np.sign(change(radius_at(self.s))) * rates / np.hypot(rates[0], rates[2]))
 
     @cached_property
     def observables(self) -> Array:
         """Approach and load, central gap H(0) in eps, contact radius in beta (nan without contact)."""
-        state, radius = self.state, math.sqrt(self.s) if self.s > 0 else math.nan
-        return np.array([state.approach, state.load, state.central_gap, radius])
+        radius = radius_at(self.s) if self.s > 0 else math.nan
+        return np.array([self.state.approach, self.state.load, self.state.central_gap, radius])
 
 
-Condition = Callable[[Point], float]
-CONDITIONS: Mapping[str, Condition] = {
-    "fold": lambda point: float(point.rates[0]),
-    "pull_off": lambda point: float(point.rates[1]),
-    "zero_load": lambda point: point.state.load,
-}
-"""What vanishes at an event: the change of the approach at a jump or a further fold, of the load at pull-off, W at no
-load."""
+def radius_at(s: float) -> float:
+    """Radius in beta at which the gap is given at a place of a `Path`."""
+    return math.sqrt(max(s, 0.0))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -71,60 +66,56 @@ class Path(Valued):
     """
 
     contact: Contact
-    how: Settings = USUAL
 
     def at(self, s: float, y: Array) -> Point:
         """Point at a place, from a state nearby."""
-        row = np.append(gap_at(self.contact.body.radii, math.sqrt(max(s, 0.0))), 0.0)
-        state = newton(self.contact, y, along(row, self.contact.law.edge - min(s, 0.0)))
-        rates = np.array([1.0, state.stiffness, on_axis(self.contact, state.rate[:-1])])
-        rates *= -np.sign(row @ state.rate) / np.hypot(rates[0], rates[2])
-        return Point(s, Equilibrium(self.contact, state.y), rates, state.unstable == 0)  # less its large factors
+        gap = self.contact.law.edge - min(s, 0.0)
+        return Point(s, newton(self.contact, y, at_gap(self.contact, radius_at(s), gap)))
 
-    def follow(self, approach: float, to_load: float) -> list[Point]:
-        """Points from an approach of separated surfaces, through every fold, to a compressive load."""
-        edge, how = self.contact.law.edge, self.how
-        points, step = [self.at(edge - 1 + approach, self.contact.undeformed(approach))], np.inf
+    def follow(self, approach: float, to_load: float, longest: float = 0.1) -> list[Point]:
+        """Points from an approach of separated surfaces, through every fold, to a compressive load.
+
+        The steps are at most a part, `longest`, of the central gap, or of one and the squared contact radius: with 0.3
+        both folds at a Tabor parameter of 0.72 were passed by, with 0.15 they are found. A step that fails is halved.
+        """
+        edge = self.contact.law.edge
+        points, halvings = [self.at(edge - 1 + approach, self.contact.undeformed(approach))], 0
         while (last := points[-1]).state.load < to_load:
-            step = min(2 * step, how.longest * (edge - last.s if last.s < 0 else 1 + last.s))
+            step = longest * (edge - last.s if last.s < 0 else 1 + last.s) / 2**halvings
             found = tried(self.at, last.s + step, last.state.y)
             if found:
                 points.append(found)
-            elif step > how.shortest:
-                step /= 4
-            else:
+                halvings = max(halvings - 1, 0)
+            elif (halvings := halvings + 1) > 16:
                 at = f"alpha = {last.state.approach:.4g} eps"
                 raise NotConverged(f"the weak form's path ends at {at}; try another to_load or a smaller tabor")
         return [*points[:-1], *self.located(points[-2:], lambda point: point.state.load - to_load)]
 
-    def located(self, points: Sequence[Point], condition: Condition) -> list[Point]:
+    def located(self, points: Sequence[Point], condition: Any) -> list[Point]:
         """All points at which a condition changes its sign, in order; the state is solved for at every trial."""
         found = []
         for a, b in pairwise(points):
             if condition(a) * condition(b) < 0:
-                root = brentq(lambda s, y=a.state.y: condition(self.at(s, y)), a.s, b.s, xtol=self.how.root)
+                root = brentq(lambda s, y=a.state.y: condition(self.at(s, y)), a.s, b.s, xtol=1e-7)
                 found.append(self.at(root, a.state.y))
         return found
 
     def events(self, points: Sequence[Point]) -> dict[str, Point]:
         """Pull-off, zero load in contact, and the folds: jump_on and jump_off the outermost, fold_2 ... between."""
-        folds, extrema, zeros = (self.located(points, condition) for condition in CONDITIONS.values())
+        folds, extrema = (self.located(points, lambda point, n=n: point.rates[n]) for n in (0, 1))
+        zeros = self.located(points, lambda point: point.state.load)
         if not extrema:
             raise NotConverged("the weak form's path has no minimum of the load; give a larger to_load")
-        found = {"pull_off": min(extrema, key=CONDITIONS["zero_load"])}
+        found = {"pull_off": min(extrema, key=lambda point: point.state.load)}
         if len(folds) > 1:
             found |= {"jump_on": folds[0], "jump_off": folds[-1]}
             found |= {f"fold_{n}": point for n, point in enumerate(folds[1:-1], 2)}
         return found | ({"zero_load": zeros[-1]} if zeros else {})
 
-    def again(self, point: Point, event: str = "") -> Point:
-        """Point at the same place on the same cells by elements of another degree, or the event near it."""
-        there, state, s = self.contact.body.radii, point.state, point.s
-        y = np.append(even(state.contact.body, state.y[:-1])(there), state.approach)
-        if event:
-            condition = CONDITIONS.get(event, CONDITIONS["fold"])
-            s = float(secant(lambda s: condition(self.at(s, y)), s, x1=s + self.how.beside, tol=self.how.root))
-        return self.at(s, y)
+    def again(self, point: Point) -> Point:
+        """Point at the same place on the same cells by elements of another degree."""
+        y = np.append(even(point.state.contact.body, point.state.y[:-1])(self.contact.body.radii), point.state.approach)
+        return self.at(point.s, y)
 
 
 # The curve
@@ -204,7 +195,15 @@ class Curve(States):
         }
 
 
-def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settings = USUAL) -> Curve:
+def trace(
+    scene: Scene,
+    rtol: float = 1e-3,
+    *,
+    to_load: float = 5.0,
+    separated: float = -9.0,
+    cells: float = 0.3,
+    degrees: Sequence[int] = (2, 3, 4, 5),
+) -> Curve:
     """Trace the load-approach curve by Newton's method for all displacements at once.
 
     The body is meshed by quadrilaterals and clamped far away; scikit-fem assembles the weak form of
@@ -223,8 +222,12 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settin
         Relative accuracy of loads, and of approaches in the range of the events', 1e-4 to 0.1.
     to_load : float
         Compressive load in R dgamma at which the curve ends, 0 to 20.
-    how : Settings
-        Degrees of the elements, cells, and where the curve begins.
+    separated : float
+        Approach in eps at which it begins; at -9 the attraction is a hundredth of its maximum.
+    cells : float
+        Length of the fine cells in the width of the spike of tension, or of the attraction.
+    degrees : sequence of int
+        Of the elements, until the events of two in a row agree.
 
     Raises
     ------
@@ -234,65 +237,60 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settin
         If the path ends before that load.
     """
     require_served(scene, rtol, to_load)
-    began, paths = time.perf_counter(), _paths(scene, rtol, to_load, how)
+    began, mesh = time.perf_counter(), mesh_for(scene, rtol, to_load, cells)
+    paths = (Path(Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), scene.tabor)) for degree in degrees)
     path = next(paths)
-    points = path.follow(how.separated, to_load)
-    found, told = path.events(points), dict[str, Event]()
-    errors = np.empty((0, 4))
+    points = path.follow(separated, to_load)
+    events, told = path.events(points), dict[str, Event]()
+    values = np.array([point.observables for point in points])
     for path in paths:
-        before, points = points, [path.again(point) for point in points]
-        errors = np.array([np.abs(b.observables - a.observables) for a, b in zip(before, points, strict=True)])
-        for name, event in found.items():
-            found[name] = path.again(event, name)
-            told[name] = _event(name, event, path.again(event), found[name], how.found)
+        coarse, points = events, [path.again(point) for point in points]
+        before, values = values, np.array([point.observables for point in points])
+        events = path.events(points)
+        told = {name: _event(name, path, coarse.get(name), event) for name, event in events.items()}
         rough = any(event.contact_radius_error > rtol * event.contact_radius for event in told.values())
         if not (rough or Tolerance.on(told, rtol).missed(told)):
             break
-    approach, load, central_gap, contact_radius = np.transpose([point.observables for point in points])
-    return Curve(
-        approach,
-        load,
-        central_gap,
-        contact_radius,
-        *(errors[:, 0], errors[:, 1], errors[:, 2], errors[:, 3]),
+    fields: list[Any] = [
+        *values.T,
+        *np.abs(values - before).T,
         scene.tabor,
         rtol,
         np.array([point.rates for point in points]),
-        np.append(0.0, np.cumsum(np.hypot(np.diff(approach), np.diff(central_gap)))),
-        np.array([point.stable for point in points]),
+        np.append(0.0, np.cumsum(np.hypot(*np.diff(values[:, [0, 2]], axis=0).T))),
+        np.array([point.state.unstable == 0 for point in points]),
         told,
         path.contact.body.stiffness.shape[0],
         time.perf_counter() - began,
         {"rtol": rtol, "far": path.contact.body.rim},
-    )
+    ]
+    return Curve(*fields)
 
 
-def _paths(scene: Scene, rtol: float, to_load: float, how: Settings) -> Iterator[Path]:
-    """Paths on elements of ever higher degree, on one mesh.
+def mesh_for(scene: Scene, rtol: float, to_load: float, cells: float) -> Any:
+    """Box so large that its clamp takes a thousandth of rtol eps from the approach.
 
-    The box is so large that its clamp takes little of the approach. Its cells are fine up to the contact radius by JKR
-    at the largest load: the edge, whose spike of tension is as wide as 1/mu^2 beta, passes by all of it. Attraction is
-    as wide as mu^(-1/2) beta at least.
+    Its cells are fine up to the contact radius by JKR at the largest load: the edge, whose spike of tension is as wide
+    as 1/mu^2 beta, passes by all of it. Attraction is as wide as mu^(-1/2) beta at least. Beyond they grow threefold.
     """
     mu, W = scene.tabor, to_load
-    far = mu * max(W, 1.0) / (np.pi * how.left_out * rtol)  # a clamp at L takes W/(pi L) beta^2/R of the approach
+    far = mu * max(W, 1.0) / (np.pi * 1e-3 * rtol)  # a clamp at L takes W/(pi L) beta^2/R of the approach
     swept = float(0.75 * (W + 3 * np.pi + np.sqrt(6 * np.pi * W + (3 * np.pi) ** 2))) ** (1 / 3)
-    length = how.cells / max(mu**2, mu**0.5)
-    fine = np.linspace(0, swept, int(np.ceil(swept / length)) + 1)
-    beyond = growing(fine[1], far, how.growth)
-    mesh = box(np.append(fine, swept + how.growth * beyond), beyond)
-    for degree in how.degrees:
-        yield Path(Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), mu), how)
+    fine = np.linspace(0, swept, int(np.ceil(swept / cells * max(mu**2, mu**0.5))) + 1)
+    beyond = np.cumsum(fine[1] * 3.0 ** np.arange(1 + np.ceil(np.log(far / fine[1]) / np.log(3))))
+    return box(np.append(fine, swept + 3 * beyond), beyond)
 
 
-def _event(name: str, coarse: Point, there: Point, fine: Point, found: float) -> Event:
-    """Numbers of an event with errors, from those on coarser elements, and of the state there on the finer ones.
+def _event(name: str, path: Path, coarse: Point | None, fine: Point) -> Event:
+    """Numbers of an event on the finer elements, with errors.
 
-    Each errs by its change. As two numbers may agree by chance while the event moves along the path, where that turns
-    they err no less than by what its move makes of them.
+    Each errs by its change from the coarser elements, if these have the event. As two numbers may agree by chance while
+    the event moves along the path, where that turns they err no less than by what its move makes of them.
     """
-    others = (coarse,) if name == "zero_load" else (coarse, there)
-    errors = np.max([np.abs(fine.observables - other.observables) for other in others], axis=0) + found
+    if coarse is None:
+        return Event(name, *map(float, fine.observables), *[math.inf] * 4)
+    others = (coarse,) if name == "zero_load" else (coarse, path.again(coarse))
+    errors = np.max([np.abs(fine.observables - other.observables) for other in others], axis=0) + 1e-8
     return Event(name, *map(float, fine.observables), *map(float, errors))
 
 

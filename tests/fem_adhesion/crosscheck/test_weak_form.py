@@ -48,7 +48,7 @@ def test_the_path_turns_where_its_conditions_vanish(path):
     assert abs(found["zero_load"].state.load) < 1e-6
     assert found["pull_off"].state.load == min(point.state.load for point in [*points, found["pull_off"]])
     signs = np.array([point.rates[0] > 0 for point in points])
-    assert (signs == [point.stable for point in points]).all()  # inertia and turning of the path agree
+    assert (signs == [point.state.unstable == 0 for point in points]).all()  # inertia and turning of the path agree
 
 
 def test_a_point_has_the_contact_radius_or_the_gap_that_was_asked_for(path):
