@@ -10,11 +10,12 @@ from fem_adhesion.common import style
 from fem_adhesion.fitting.study import Fit
 
 COLOURS = (style.BLUE, style.RED)  # of approach and retract
+PRESSED = 2.0  # pull-off forces up to which the contact is shown beside its jumps
 AROUND = 1.5  # distances of the two jumps shown on either side of the contact
 
 
 def draw(fit: Fit) -> Figure:
-    """Force against travel about the contact, residuals in standard deviations of the noise, contour."""
+    """Force against travel about the jumps, all residuals in standard deviations of the noise, contour."""
     best, data = fit.best, fit.best.problem.data
     found = best.problem.branches(best.apparatus)
     model = data.modelled(found)
@@ -35,13 +36,15 @@ def draw(fit: Fit) -> Figure:
     for name, colour in zip(("approach", "retract"), COLOURS, strict=True):
         top.plot([], [], ".", color=colour, label=name)
     top.plot([], [], color="black", label="fit, on the branch of the samples")
+    travel = "travel of the base from the contact point"
     width = max(abs(on - off), 1e-3 * float(np.ptp(x)))
-    near = min(on, off) - AROUND * width, max(float(x.max()), AROUND * width)
+    light = x[force < PRESSED * fit.prepared.pull_off]
+    near = min(on, off) - AROUND * width, max(float(light.max()), AROUND * width)
     shown = force[(x > near[0]) & (x < near[1])]
     margin = 0.08 * float(np.ptp(shown))
-    style.dress(top, "", "force", xlim=near, ylim=(float(shown.min()) - margin, float(shown.max()) + margin))
+    style.dress(top, travel, "force", xlim=near, ylim=(float(shown.min()) - margin, float(shown.max()) + margin))
     below.axhline(0.0, color="0.6", linewidth=0.8)
-    style.dress(below, "travel of the base from the contact point", "residual, noise", legend=None, xlim=near)
+    style.dress(below, f"{travel}, all of the curve", "residual, noise", legend=None)
     right.fill(*fit.contour, color=style.SKY, alpha=0.4, label="95 % of the pair")
     right.plot(best.apparatus.work_of_adhesion, best.apparatus.spacing, "+", color="black", markersize=10, label="best")
     style.dress(right, "work of adhesion", "spacing eps")
