@@ -228,7 +228,8 @@ def _stable_side(state: Equilibrium) -> float:
     else is no jump.
     """
     for step in np.array(USUAL.aside) * (1 + abs(state.load)):
-        below, above = (_found(state.at_load, state.load + d) for d in (-step, step))
+        below = _found(state.at_load, state.load - step)
+        above = below and _found(state.at_load, state.load + step)
         if below and above:
             ways = below.unstable, above.unstable
             return float(ways[0] - ways[1]) if min(ways) == 0 else math.nan
