@@ -20,7 +20,8 @@ How independent the two solvers are:
   and end, and the infinite one.
 * Where cells begin and end: the same radial lines; error estimates by refinement on each side.
 * All that is shared is checked by a weak form with its own law, profile, energy and Newton's method, on
-  a mesh of its own, for which it takes of the solvers the function alone that grades cells. Lengths and profiles are
+  a mesh of its own for half-spaces, for which it takes of the solvers the function alone that grades cells, and on
+  the bodies' own mesh for others. Lengths and profiles are
   from formulas of its own (`definitions`); of laws but the 3-9 it is told the potential alone, of profiles of the
   user's the height. It shares nothing else with them. Each event of the finite
   elements is put into it: do the gaps balance, do the tensions across them make the load, are central gap and contact

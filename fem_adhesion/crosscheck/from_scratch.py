@@ -206,7 +206,7 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
         side = None if b is None else _stable_side(b)
         yield Compared(f"{name} stable side", "", (side, side), Estimate(FOLDS[name], 0.0), 1.0)
     if smooth:
-        a, b = (_found(_from_afar, scene.scales.separated_approach, state) or None for state in (coarse, fine))
+        a, b = (_found(_from_afar, scene.scales.separated_approach, state) for state in (coarse, fine))
         a = _turn(name, a)
     if smooth or (name != "zero_load" and not sharp):
         b = _turn(name, b)

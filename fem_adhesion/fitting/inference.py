@@ -16,7 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
-from scipy.optimize import brentq, least_squares
+from scipy.optimize import brentq, least_squares, minimize_scalar
 from scipy.special import ndtr
 from scipy.stats import chi2 as chi2_law
 from scipy.stats import norm
@@ -32,8 +32,9 @@ BLIND = 1e6  # largest ratio of two standard errors
 FARTHEST = 12.0  # coordinates beyond which nothing is asked for: a factor of 1e5
 FEW = 5  # samples on either side of a division at least, of which a slope is known
 APART = math.log(10) / 2  # of the Tabor parameters from which fits start
-NEARLY = 1.1  # chi square in that of noise up to which a model fits
+NEARLY = 1.1  # chi square in the least one, or in that of noise, up to which a fit counts as one
 SHALLOW = 0.01  # of a squared standard error: how far a valley of the profile falls that is not looked into
+STILL = 0.1  # of a standard error: how near to a fit the least chi square is, by its slope, that is not looked for
 NEAR = 0.05  # of the distance between fits within and beyond a profile, to which its end is looked for
 NODES = (0.25, 0.5, 0.75)  # of the way from the best Tabor parameter to either end, where the profile is fitted
 FINE = 401  # places between these on which intervals are read off
@@ -554,14 +555,28 @@ class Scan:
         return min(self.fits.values(), key=lambda one: one.chi2)
 
     def minimise(self) -> None:
-        """Go on until the best fit is between two others, or at a limit; look for the least in each valley."""
+        """Go on until the best fit is between two others, or at a limit; look for the least in each valley.
+
+        Valleys are told by slopes, and by values where a fit is lower than both neighbours and not the least.
+        """
         while (low := self.best.problem.log_tabor) in (min(self.fits), max(self.fits)) and low not in self.limits:
             self.fit(low + (APART if low == max(self.fits) else -APART))
         for pair in pairwise(sorted(self.fits)):
             left, right = (self.fits[at] for at in pair)
             if self._is_valley(left, right):
-                near = 0.1 * min(left, right, key=lambda one: one.chi2).tabor_error
+                near = STILL * min(left, right, key=lambda one: one.chi2).tabor_error
                 brentq(lambda at: self.fit(at).slope, *pair, xtol=near)
+        grid = sorted(self.fits)
+        for before, at, after in zip(grid, grid[1:], grid[2:], strict=False):
+            here = self.fits[at]
+            lowest = here.chi2 <= min(self.fits[before].chi2, self.fits[after].chi2, NEARLY * self.best.chi2)
+            if lowest and abs(here.slope) * here.tabor_error > STILL * self.best.scale:
+                minimize_scalar(
+                    lambda at: self.fit(at).chi2,
+                    bounds=(before, after),
+                    method="bounded",
+                    options={"xatol": STILL * here.tabor_error},
+                )
 
     def _is_valley(self, left: Best, right: Best) -> bool:
         """Whether the least chi square falls at one fit, rises at the next, and may be likely between them.

@@ -31,7 +31,7 @@ from fem_adhesion.fitting.prepare import Prepared, prepare
 from fem_adhesion.fitting.traced import Traced
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.errors import InputError, Unsolved, tried
-from halfspace.limits import require_poisson
+from halfspace.limits import ATOM, require_poisson
 from halfspace.values import Array
 
 TABORS = tuple(
@@ -52,7 +52,10 @@ UNITS: Mapping[str, str] = {
     "compliance": "m/N",
 }
 """Parameters and their units in SI."""
-LIMITS = {"sensitivity": (0.1, 10.0)}  # beyond, a wrong unit is likelier; others are positive
+LIMITS = {
+    "sensitivity": (0.1, 10.0),
+    "radius": (ATOM, math.inf),
+}  # beyond, a wrong unit is likelier; others are positive
 MEDIAN = float(norm.isf(0.25))  # size of a normal error, in its standard deviation
 WHITE = 1e-3  # chance below which residuals are no noise
 

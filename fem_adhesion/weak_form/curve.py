@@ -223,11 +223,11 @@ def trace(
     to_load : float
         Compressive load in R dgamma at which the curve ends, 0 to 20.
     separated : float
-        Approach in eps at which it begins; at -9 the attraction is a hundredth of its maximum.
+        Approach in eps at which it begins, less than -1; at -9 the attraction is a hundredth of its maximum.
     cells : float
         Length of the fine cells in the width of the spike of tension, or of the attraction.
     degrees : sequence of int
-        Of the elements, until the events of two in a row agree.
+        Of the elements, two at least, rising from 2 on, until the events of two in a row agree.
 
     Raises
     ------
@@ -237,6 +237,7 @@ def trace(
         If the path ends before that load.
     """
     require_served(scene, rtol, to_load)
+    _require_elements(separated, cells, degrees)
     began, mesh = time.perf_counter(), mesh_for(scene, rtol, to_load, cells)
     paths = (Path(Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), scene.tabor)) for degree in degrees)
     path = next(paths)
@@ -309,3 +310,13 @@ def require_served(scene: Scene, rtol: float, to_load: float) -> None:
     values = {"tabor": scene.tabor, "poisson": scene.poisson, "rtol": rtol, "to_load": to_load}
     for name, value in values.items():
         require_between(value, name, *LIMITS[name], "take fem_adhesion.trace, solver fem", " of the weak form")
+
+
+def _require_elements(separated: float, cells: float, degrees: Sequence[int]) -> None:
+    """Refuse a beginning in contact, or elements that cannot be or from which no change can be told."""
+    if not separated < -1:
+        raise InputError(f"separated = {separated:g}, limit: separated < -1; begin with the surfaces apart, as at -9")
+    if not 0 < cells <= 1:
+        raise InputError(f"cells = {cells:g}, limit: 0 < cells <= 1; take 0.3")
+    if len(degrees) < 2 or list(degrees) != sorted({max(2, int(degree)) for degree in degrees}):
+        raise InputError(f"degrees = {tuple(degrees)}, limit: two at least, rising from 2 on; take (2, 3, 4, 5)")

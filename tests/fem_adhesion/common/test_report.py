@@ -282,6 +282,14 @@ def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, content
 # --- the walk ---
 
 
+def test_states_of_the_walk_are_stable_where_the_curve_is(contents, html):
+    path, walked = contents.walk.path, contents.walk
+    stable = dict(zip(path.arclength.tolist(), path.stable.tolist(), strict=True))
+    between = [station for station in walked.stations if not station.name]
+    assert [station.stable for station in between] == [stable[station.arclength] for station in between]
+    assert [one["stable"] for one in data_of(html)["stations"]] == [station.stable for station in walked.stations]
+
+
 def test_each_number_of_a_station_stands_under_its_name(contents, html):
     walked = contents.walk
     shown, path = data_of(html)["stations"], walked.path

@@ -6,10 +6,12 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib import rc_context
 from page_tables import rows_of
 
 import halfspace
 from fem_adhesion import HalfSpace, Hemisphere, cli, convergence
+from fem_adhesion.common import style
 from fem_adhesion.common.page import markdown
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
@@ -380,6 +382,16 @@ def test_an_error_below_the_truths_uncertainty_is_shown_as_such():
     assert "<" not in "\n".join(lines_of_page(told)).split("What it costs")[1]
     labels = [line.get_label() for line in speed_page.error_against_time(told, "pull_off").axes[0].lines]
     assert "within that uncertainty" not in labels
+
+
+def test_nothing_is_cut_off_or_overprinted(distinct):
+    with rc_context(style.LOOK):
+        figure = speed_page.error_against_time(distinct, "hysteresis")
+        figure.draw_without_rendering()
+    boxes = [axes.get_tightbbox() for axes in figure.axes]
+    assert all(box.x0 >= 0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0 for box in boxes)
+    assert boxes[0].x1 <= boxes[1].x0
+    assert all(axes.get_window_extent().width > 0.3 * figure.bbox.width for axes in figure.axes)
 
 
 # --- absurd results find absurd sentences, or none ---

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import fem_adhesion
+import halfspace
 from fem_adhesion import Hemisphere, Scene, harmonics
 from halfspace.theories.exact_sphere import RigidSphere
 
@@ -61,6 +62,21 @@ def test_events_are_right_within_estimates():
     for name, event in path.events.items():
         assert event.approach_error <= 1e-5 * path.approach_scale, name
         assert name == "zero_load" or event.load_error <= 1e-5 * abs(event.load), name
+
+
+@pytest.mark.parametrize("tabor", [1.0, 3.0])
+def test_the_shift_of_a_jump_has_the_bulks_logarithm(tabor):
+    """At a fold d alpha* = mu W s [kappa ln(1/s) + constant + O(s)], s = beta/R = sqrt(mu/rho): fitted to three rho.
+
+    A point load's deflection beside the half-space's is W/(R E*) [kappa ln(R/r) + constant + ...].
+    """
+    kappa, events = (1 - 2 * POISSON) ** 2 / (2 * np.pi * (1 - POISSON)), halfspace.trace(tabor, rtol=1e-7).events
+    ratios = np.array([1e2, 1e3, 1e4])
+    s = np.sqrt(tabor / ratios)
+    for name in ("jump_on", "jump_off"):
+        shifts = [TABLE[tabor, ratio, name]["approach"] - events[name].approach for ratio in ratios]
+        fitted = np.linalg.solve(np.stack([-np.log(s), np.ones(3), s], axis=1), shifts / s)
+        assert fitted[0] == pytest.approx(tabor * events[name].load * kappa, rel=0.05), name
 
 
 def test_a_nearly_rigid_hemisphere_pulls_off_as_the_rigid_one():

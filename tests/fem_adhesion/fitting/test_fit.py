@@ -246,6 +246,10 @@ COUNTER = "--counter-modulus", "1GPa", "--counter-poisson", "0.3"
             "model = 'hertz', limit: one of atlas, maugis",
         ),
         (["--radius", "50nm", "--modulus", "1GPa", "--poisson", "0.3", "--counter-modulus", "1GPa"], "both or none"),
+        (
+            ["--radius", "1e-30nm", "--modulus", "1GPa", "--poisson", "0.3", "--stiffness", "1N/m"],
+            "radius = 1e-39 is outside 1e-10 < radius",
+        ),
         ([*SPHERE, "--sensitivity", "0"], "sensitivity = 0 is outside 0.1 < sensitivity < 10"),
         ([*SPHERE, "--models", "morse:no"], "k = 'no' is not a number"),
         ([*SPHERE, "--models", "layer:2", *COUNTER], "model = layer:2 with a counter-body"),
