@@ -19,7 +19,6 @@ MOST_POINTS = 10_000
 """Of a curve."""
 LAYER_THICKNESS = (0.01, 1000.0)
 """Of a layer, in beta."""
-ATOM = 1e-10  # radius in m of an atom, below which nothing is a sphere
 
 
 def require_number(value: object, name: str) -> float:

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 from fem_adhesion.common.words import Length, in_beta, part_in, usage
 from fem_adhesion.registry import PARTS, class_of, name_of
 from halfspace.errors import InputError
-from halfspace.limits import ATOM
 
 if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact, Inputs
@@ -32,6 +31,7 @@ MATERIAL = ("radius", "modulus", "poisson", "work_of_adhesion")
 LAW = ("spacing", "hamaker")  # one of both
 COUNTER = ("counter_modulus", "counter_poisson", "counter_radius")
 SI_ONLY = ("radius", "modulus", "work_of_adhesion", *LAW, "counter_modulus", "counter_radius")
+ATOM = 1e-10  # radius in m of an atom, below which nothing is a sphere
 APEX = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
 MATERIALS = {"small": "linear-elastic", "finite": "neo-hookean"}  # by the strain
 

@@ -13,6 +13,7 @@ from scipy.stats import chi2, norm
 
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.common.numbers import Measured
+from fem_adhesion.common.scene_options import ATOM
 from fem_adhesion.fitting.inference import (
     MEAN_PULL_OFF,
     NORMAL,
@@ -31,7 +32,7 @@ from fem_adhesion.fitting.prepare import Prepared, prepare
 from fem_adhesion.fitting.traced import Traced
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.errors import InputError, Unsolved, tried
-from halfspace.limits import ATOM, require_poisson
+from halfspace.limits import require_poisson
 from halfspace.values import Array
 
 TABORS = tuple(
