@@ -34,7 +34,7 @@ FEW = 5  # samples on either side of a division at least, of which a slope is kn
 APART = math.log(10) / 2  # of the Tabor parameters from which fits start
 NEARLY = 1.1  # chi square in the least one, or in that of noise, up to which a fit counts as one
 SHALLOW = 0.01  # of a squared standard error: how far a valley of the profile falls that is not looked into
-STILL = 0.1  # of a standard error: how near to a fit the least chi square is, by its slope, that is not looked for
+STILL = 0.1  # of a standard error: to which a least chi square is looked for
 NEAR = 0.05  # of the distance between fits within and beyond a profile, to which its end is looked for
 NODES = (0.25, 0.5, 0.75)  # of the way from the best Tabor parameter to either end, where the profile is fitted
 FINE = 401  # places between these on which intervals are read off
@@ -372,8 +372,8 @@ class Best:
     @cached_property
     def slope(self) -> float:
         """Derivative of the least chi square by ln tabor: what the other coordinates take up does not count."""
-        along = self.whole[:, -1]
-        along = along - self.jacobian @ np.linalg.lstsq(self.jacobian, along)[0]
+        by_tabor = self.whole[:, -1]
+        along = by_tabor - self.jacobian @ np.linalg.lstsq(self.jacobian, by_tabor)[0]
         return 2 * float(self.problem.residuals(self.x) @ along)
 
     @property
