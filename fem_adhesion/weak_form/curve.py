@@ -18,7 +18,7 @@ from fem_adhesion.scene import Scene, require_scene
 from fem_adhesion.weak_form.body import Array, box, discretise
 from fem_adhesion.weak_form.contact import Contact
 from fem_adhesion.weak_form.newton import Equilibrium, at_gap, even, newton
-from halfspace.equilibrium.events import Event, Tolerance, points_of, tolerance_told
+from halfspace.equilibrium.events import Event, Tolerance, WithEvents, points_of, tolerance_told
 from halfspace.errors import InputError, NotConverged, tried
 from halfspace.laws import LENNARD_JONES
 from halfspace.limits import require_between
@@ -122,13 +122,13 @@ class Path(Valued):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Curve(States):
+class Curve(WithEvents, States):
     """A load-approach curve from separation to compression, through every fold: points with their errors, and events.
 
     Attributes
     ----------
-    tabor, rtol : float
-        Tabor parameter, and the relative accuracy that was asked of loads and approaches.
+    tabor : float
+        Tabor parameter.
     rates : (points, 3) array
         Of approach, load and central gap along the path.
     arclength : (points,) array
@@ -143,11 +143,10 @@ class Curve(States):
     seconds : float
         Wall time.
     settings : mapping
-        Size of the box and the accuracy.
+        The accuracy that was asked of loads and approaches, and the size of the box.
     """
 
     tabor: float
-    rtol: float
     rates: Array
     arclength: Array
     stable: NDArray[np.bool_]
@@ -162,29 +161,10 @@ class Curve(States):
         told = tolerance_told(self.rtol, self.missed)
         return f"<Curve of tabor {self.tabor:g}, {len(self.load)} points: {found}; {told}>"
 
-    def event(self, name: str) -> Event | None:
-        """Event by name, None if the curve does not have it."""
-        return self.events.get(name)
-
-    @property
-    def tolerance(self) -> Tolerance:
-        """What `rtol` means for loads and approaches."""
-        return Tolerance.on(self.events, self.rtol)
-
     @property
     def stable_under_dead_load(self) -> NDArray[np.bool_]:
         """Stability under a dead load: stable under fixed grips, and the load rises with the approach."""
         return np.asarray(self.stable & (self.rates[:, 0] * self.rates[:, 1] > 0))
-
-    @property
-    def missed(self) -> dict[str, tuple[str, ...]]:
-        """By event, the numbers whose estimated errors exceed `tolerance`."""
-        return self.tolerance.missed(self.events)
-
-    @property
-    def met(self) -> bool:
-        """Whether all events have their loads and approaches to the accuracy asked for."""
-        return not self.missed
 
     def to_dict(self) -> dict[str, Any]:
         """All numbers as plain data, as of `halfspace.EquilibriumPath.to_dict`; energy and margin are not known."""
@@ -200,9 +180,6 @@ def trace(
     rtol: float = 1e-3,
     *,
     to_load: float = 5.0,
-    separated: float = -9.0,
-    cells: float = 0.3,
-    degrees: Sequence[int] = (2, 3, 4, 5),
 ) -> Curve:
     """Trace the load-approach curve by Newton's method for all displacements at once.
 
@@ -222,12 +199,6 @@ def trace(
         Relative accuracy of loads, and of approaches in the range of the events', 1e-4 to 0.1.
     to_load : float
         Compressive load in R dgamma at which the curve ends, 0 to 20.
-    separated : float
-        Approach in eps at which it begins, less than -1; at -9 the attraction is a hundredth of its maximum.
-    cells : float
-        Length of the fine cells in the width of the spike of tension, or of the attraction.
-    degrees : sequence of int
-        Of the elements, two at least, rising from 2 on, until the events of two in a row agree.
 
     Raises
     ------
@@ -237,18 +208,18 @@ def trace(
         If the path ends before that load.
     """
     require_served(scene, rtol, to_load)
-    _require_elements(separated, cells, degrees)
-    began, mesh = time.perf_counter(), mesh_for(scene, rtol, to_load, cells)
-    paths = (Path(Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), scene.tabor)) for degree in degrees)
+    began, mesh = time.perf_counter(), mesh_for(scene, rtol, to_load)
+    paths = (Path(Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), scene.tabor)) for degree in (2, 3, 4, 5))
     path = next(paths)
-    points = path.follow(separated, to_load)
+    points = path.follow(-9.0, to_load)  # eps; the attraction is a hundredth of its maximum there
     events, told = path.events(points), dict[str, Event]()
     values = np.array([point.observables for point in points])
     for path in paths:
         coarse, points = events, [path.again(point) for point in points]
         before, values = values, np.array([point.observables for point in points])
         events = path.events(points)
-        told = {name: _event(name, path, coarse.get(name), event) for name, event in events.items()}
+        alike = events.keys() == coarse.keys()  # else a fold of one may not be that of the other
+        told = {name: _event(name, path, coarse[name] if alike else None, event) for name, event in events.items()}
         rough = any(event.contact_radius_error > rtol * event.contact_radius for event in told.values())
         if not (rough or Tolerance.on(told, rtol).missed(told)):
             break
@@ -256,7 +227,6 @@ def trace(
         *values.T,
         *np.abs(values - before).T,
         scene.tabor,
-        rtol,
         np.array([point.rates for point in points]),
         np.append(0.0, np.cumsum(np.hypot(*np.diff(values[:, [0, 2]], axis=0).T))),
         np.array([point.state.unstable == 0 for point in points]),
@@ -268,7 +238,7 @@ def trace(
     return Curve(*fields)
 
 
-def mesh_for(scene: Scene, rtol: float, to_load: float, cells: float) -> Any:
+def mesh_for(scene: Scene, rtol: float, to_load: float) -> Any:
     """Box so large that its clamp takes a thousandth of rtol eps from the approach.
 
     Its cells are fine up to the contact radius by JKR at the largest load: the edge, whose spike of tension is as wide
@@ -277,7 +247,7 @@ def mesh_for(scene: Scene, rtol: float, to_load: float, cells: float) -> Any:
     mu, W = scene.tabor, to_load
     far = mu * max(W, 1.0) / (np.pi * 1e-3 * rtol)  # a clamp at L takes W/(pi L) beta^2/R of the approach
     swept = float(0.75 * (W + 3 * np.pi + np.sqrt(6 * np.pi * W + (3 * np.pi) ** 2))) ** (1 / 3)
-    fine = np.linspace(0, swept, int(np.ceil(swept / cells * max(mu**2, mu**0.5))) + 1)
+    fine = np.linspace(0, swept, int(np.ceil(swept / 0.3 * max(mu**2, mu**0.5))) + 1)
     beyond = np.cumsum(fine[1] * 3.0 ** np.arange(1 + np.ceil(np.log(far / fine[1]) / np.log(3))))
     return box(np.append(fine, swept + 3 * beyond), beyond)
 
@@ -285,8 +255,8 @@ def mesh_for(scene: Scene, rtol: float, to_load: float, cells: float) -> Any:
 def _event(name: str, path: Path, coarse: Point | None, fine: Point) -> Event:
     """Numbers of an event on the finer elements, with errors.
 
-    Each errs by its change from the coarser elements, if these have the event. As two numbers may agree by chance while
-    the event moves along the path, where that turns they err no less than by what its move makes of them.
+    Each errs by its change from the coarser elements, if these have the same events. As two numbers may agree by chance
+    while the event moves along the path, where that turns they err no less than by what its move makes of them.
     """
     if coarse is None:
         return Event(name, *map(float, fine.observables), *[math.inf] * 4)
@@ -310,13 +280,3 @@ def require_served(scene: Scene, rtol: float, to_load: float) -> None:
     values = {"tabor": scene.tabor, "poisson": scene.poisson, "rtol": rtol, "to_load": to_load}
     for name, value in values.items():
         require_between(value, name, *LIMITS[name], "take fem_adhesion.trace, solver fem", " of the weak form")
-
-
-def _require_elements(separated: float, cells: float, degrees: Sequence[int]) -> None:
-    """Refuse a beginning in contact, or elements that cannot be or from which no change can be told."""
-    if not separated < -1:
-        raise InputError(f"separated = {separated:g}, limit: separated < -1; begin with the surfaces apart, as at -9")
-    if not 0 < cells <= 1:
-        raise InputError(f"cells = {cells:g}, limit: 0 < cells <= 1; take 0.3")
-    if len(degrees) < 2 or list(degrees) != sorted({max(2, int(degree)) for degree in degrees}):
-        raise InputError(f"degrees = {tuple(degrees)}, limit: two at least, rising from 2 on; take (2, 3, 4, 5)")

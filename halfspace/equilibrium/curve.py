@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from difflib import get_close_matches
 from functools import cached_property
 from typing import Any
 
@@ -15,12 +14,10 @@ from halfspace.equilibrium.charts import Stage, metric_for
 from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.events import (
-    EVENTS,
     Event,
-    Tolerance,
     Unconfirmed,
+    WithEvents,
     approach_scale,
-    is_event,
     is_fold,
     points_of,
     tolerance_told,
@@ -35,7 +32,7 @@ from halfspace.values import Array, Estimate, States, Valued, shown
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EquilibriumPath(Valued):
+class EquilibriumPath(WithEvents, Valued):
     """The load-approach curve from far separation to compression, through every fold.
 
     Attributes
@@ -96,39 +93,6 @@ class EquilibriumPath(Valued):
     def spread(self) -> dict[str, Mapping[str, float]]:
         """By event, how far models lie apart in its numbers, solved for when first asked for."""
         return {name: self.model_uncertainty(name) for name in usual(self.events)} if self.model_uncertainty else {}
-
-    @property
-    def rtol(self) -> float:
-        """Relative accuracy that was asked of loads and approaches."""
-        return float(self.settings["rtol"])
-
-    @property
-    def met(self) -> bool:
-        """Whether the events have their loads and approaches to the accuracy asked for; `missed` says which have not.
-
-        The folds between the jumps, as they are, do not count.
-        """
-        return not self.missed
-
-    @property
-    def missed(self) -> dict[str, tuple[str, ...]]:
-        """By event, the numbers whose estimated errors exceed `tolerance`."""
-        return self.tolerance.missed(usual(self.events))
-
-    @property
-    def tolerance(self) -> Tolerance:
-        """What `rtol` means for loads and approaches."""
-        return Tolerance.on(usual(self.events), self.rtol)
-
-    def event(self, name: str) -> Event | None:
-        """Event by name, or None if the curve does not have it; InputError if no curve has an event of that name."""
-        if not is_event(name):
-            near = get_close_matches(name, EVENTS, n=1)
-            remedy = (
-                f'did you mean "{near[0]}"?' if near else "take one of these, or fold_2, fold_3 ... between the jumps"
-            )
-            raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
-        return self.events.get(name)
 
     @property
     def jumps(self) -> bool | None:

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.conditions import ROUND_OFF, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, OBSERVABLES
+from halfspace.errors import InputError
 from halfspace.values import Array, Estimate
 
 T = TypeVar("T")
@@ -138,6 +140,46 @@ class Tolerance:
     def missed(self, events: Mapping[str, Event]) -> dict[str, tuple[str, ...]]:
         """By event, the numbers that miss it; empty if it is met."""
         return {name: numbers for name, event in events.items() if (numbers := self.missed_by(event))}
+
+
+class WithEvents:
+    """What a load-approach curve that was solved to a relative accuracy says of its events."""
+
+    events: Mapping[str, Event]
+    settings: Mapping[str, Any]
+
+    @property
+    def rtol(self) -> float:
+        """Relative accuracy that was asked of loads and approaches."""
+        return float(self.settings["rtol"])
+
+    @property
+    def tolerance(self) -> Tolerance:
+        """What `rtol` means for loads and approaches."""
+        return Tolerance.on(usual(self.events), self.rtol)
+
+    @property
+    def missed(self) -> dict[str, tuple[str, ...]]:
+        """By event, the numbers whose estimated errors exceed `tolerance`."""
+        return self.tolerance.missed(usual(self.events))
+
+    @property
+    def met(self) -> bool:
+        """Whether the events have their loads and approaches to the accuracy asked for; `missed` says which have not.
+
+        The folds between the jumps, as they are, do not count.
+        """
+        return not self.missed
+
+    def event(self, name: str) -> Event | None:
+        """Event by name, or None if the curve does not have it; InputError if no curve has an event of that name."""
+        if not is_event(name):
+            near = get_close_matches(name, EVENTS, n=1)
+            remedy = (
+                f'did you mean "{near[0]}"?' if near else "take one of these, or fold_2, fold_3 ... between the jumps"
+            )
+            raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
+        return self.events.get(name)
 
 
 def points_of(path: Any) -> dict[str, Array]:

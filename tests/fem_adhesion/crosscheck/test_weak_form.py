@@ -98,15 +98,6 @@ def test_a_scene_that_it_does_not_serve_is_refused(scene, message):
         trace(Scene(1.0), rtol=1e-8)
 
 
-@pytest.mark.parametrize(
-    "keywords", [{"degrees": (2,)}, {"degrees": (3, 2)}, {"degrees": (1, 2)}, {"cells": 0.0}, {"separated": 0.0}]
-)
-def test_elements_that_cannot_be_are_refused(keywords):
-    (name,) = keywords
-    with pytest.raises(InputError, match=f"^{name} = .*, limit: "):
-        trace(Scene(0.5), **keywords)
-
-
 def test_the_command_writes_what_it_found(curve, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("fem_adhesion.weak_form.curve.trace", lambda *_, **__: curve)
     files = [tmp_path / name for name in ("curve.json", "curve.csv", "curve.svg")]
