@@ -92,9 +92,13 @@ def of_states(path, asked=None):
             state = path.at(**{coordinate: value}, branch=branch)
         except InputError:
             continue
-        where = f"at {coordinate} {value:.6g} on {branch}"
+        where = _where(coordinate, branch, value)
         found |= {f"{q} {where}": _estimate(state, q) for q in QUANTITIES if q != coordinate}
     return _real(found)
+
+
+def _where(coordinate, branch, value):
+    return f"at {coordinate} {value:.6g} on {branch}"
 
 
 def of_random(path, asked=None):
@@ -164,8 +168,20 @@ def tighter(numbers, asked, solve, scene, path, rtol):
 
 def any_scene(scene, path, rtol):
     """Of a half-space and what stands for one, as a block, the curve is traced anew; others' events are found again."""
-    endless = scene.checked_by == "half-space" and not (scene.body.layered or scene.surface.end < math.inf)
-    return traced(truths.half_space_of, scene) if endless else relocated(truths.of, scene, path, rtol)
+    return traced(truths.half_space_of, scene) if truths.endless(scene) else relocated(truths.of, scene, path, rtol)
+
+
+def found_again(drawn, path, _=None):
+    """Events and states of a drawn scene, from where they are on the curve, on grids that share nothing with those."""
+    stages = truths.half_space_of(drawn.scene) if truths.endless(drawn.scene) else truths.of(drawn.scene)
+    states = {_where(*place): truths.state_of(path, *place) for place in few_places(path)}
+    pairs = truths.relocated(path.stages[-1] | states, stages)
+    return _by_two(truths.of_state(found) | _of_places(found, states) for found in pairs)
+
+
+def _of_places(found, states):
+    every = {(where, q): v for where in states for q, v in truths.numbers(found[where]).items()}
+    return {f"{q} {where}": v for (where, q), v in every.items() if not where.startswith(f"at {q} ")}
 
 
 def in_si(contact, assessment, _):
@@ -273,41 +289,42 @@ def for_both_solvers(random):
 
 
 class Line(NamedTuple):
-    """A call of a solver, as a line of Python in which the tolerance is left open, and the one that is asked for."""
+    """A call of `halfspace.trace`, as a line of Python in which the tolerance is left open, and the one asked for."""
 
-    solver: str
     text: str
     rtol: float
 
     def __str__(self):
         return self.text.format(rtol=self.rtol)
 
-    def solved(self, rtol=None):
-        """What it gives; the names in it are those of its package, of laws, profiles and strata."""
-        names = {"halfspace": halfspace, "fem_adhesion": fem_adhesion, "inf": math.inf}
-        packages = [halfspace, halfspace.laws, halfspace.profiles]
-        for room in [*packages, fem_adhesion] if self.solver == "elements" else packages:
+    def solved(self, part):
+        """What it gives at a tighter tolerance, in parts of its own; the names are those of the package's parts."""
+        names = {"halfspace": halfspace, "inf": math.inf}
+        for room in (halfspace, halfspace.laws, halfspace.profiles):
             names |= {name: getattr(room, name) for name in room.__all__}
-        return eval(self.text.format(rtol=rtol or self.rtol), names)
+        return eval(self.text.format(rtol=max(part * self.rtol, 1e-9) if part < 1 else self.rtol), names)
+
+
+class Drawn(NamedTuple):
+    """A scene for the elements and the tolerance asked for."""
+
+    scene: Scene
+    rtol: float
+
+    def __str__(self):
+        return f"fem_adhesion.trace({self.scene!r}, rtol={self.rtol})"
 
 
 def half_space_line(random):
     asked = drawing.on_half_space(random)
     tabor, rtol = asked.pop("tabor"), asked.pop("rtol")
     parts = ", ".join(f"{name}={value!r}" for name, value in asked.items() if value not in (None, 5.0))
-    return Line("half-space", f"halfspace.trace({tabor}, {parts}, rtol={{rtol}})", rtol)
+    return Line(f"halfspace.trace({tabor}, {parts}, rtol={{rtol}})", rtol)
 
 
-def elements_line(random):
+def elements_drawn(random):
     scene = drawing.of_elements(random)
-    rtol = number(random, 1e-4 if scene.material.finite else 1e-6, 1e-1)
-    return Line("elements", f"fem_adhesion.trace({scene!r}, rtol={{rtol}})", rtol)
-
-
-def line_at(line, rtol):
-    """Curve of a line at a tighter tolerance than its own, in parts of that: 1 is its own."""
-    least = {"half-space": 1e-9, "elements": 1e-5 if "NeoHookean" in line.text else 1e-7}[line.solver]
-    return line.solved(max(rtol * line.rtol, least) if rtol < 1 else None)
+    return Drawn(scene, number(random, 1e-4 if scene.material.finite else 1e-6, 1e-1))
 
 
 USUAL = (0.02, 0.1, 0.3, 0.5, 0.65, 0.75, 1, 1.5, 2, 3, 5, 8, 20, 50)
@@ -471,12 +488,6 @@ def curve(full, quick, solve, stages):
     return Family(full, quick, solve, of_curve, partial(along, stages), anew=True)
 
 
-def random_lines(line, full, quick):
-    truth = partial(tighter, of_random, few_places, line_at)
-    few = at(drawn(line, quick) if quick else (), 0)
-    return Family(at(drawn(line, full), 0), few, line_at, of_random, truth, patience=60)
-
-
 def by_compare(full, **bad):
     def none(_, case, __):
         return dict.fromkeys(of_comparison(case), Estimate(0.0, 0.0))
@@ -562,8 +573,17 @@ FAMILIES = {
         lambda both, _: HS(both.scene, both.rtol),
         lambda both, _, __: of_path(FE(both.scene, both.fe_rtol)),
     ),
-    "half-space, random": random_lines(half_space_line, 60, 2),
-    "elements, random": random_lines(elements_line, 30, 0),
+    "half-space, random": Family(
+        at(drawn(half_space_line, 60), 0),
+        at(drawn(half_space_line, 2), 0),
+        Line.solved,
+        of_random,
+        partial(tighter, of_random, few_places, Line.solved),
+        patience=60,
+    ),
+    "elements, random": Family(
+        at(drawn(elements_drawn, 30), 0), at((), 0), lambda one, _: FE(*one), of_random, found_again, patience=60
+    ),
     "compare": by_compare(at(TOGETHER, 4)),
     "compare, drawn on layers": by_compare(at(drawn(drawing.on_layers, 12), 4), bad=("disagree",)),
 }

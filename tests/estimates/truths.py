@@ -21,7 +21,7 @@ from halfspace.elastic import compliance
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.equilibrium.charts import moved, placed, trace_charts
-from halfspace.equilibrium.conditions import FOLD, Located
+from halfspace.equilibrium.conditions import FOLD, Condition, Located
 from halfspace.equilibrium.events import is_event, numbered
 from halfspace.equilibrium.search import brackets_of, energy_released, find_events, with_care
 from halfspace.errors import required
@@ -120,6 +120,11 @@ def elements(scene):
     return [standing(discretise.sized_body(scene, Discretisation(*how))) for how in ((8, 0.55, 2.0), (9, 0.5, 2.2))]
 
 
+def endless(scene):
+    """Whether a scene is a half-space's, or of what stands for one, under a surface without an end."""
+    return scene.checked_by == "half-space" and not (scene.body.layered or scene.surface.end < np.inf)
+
+
 def of(scene):
     """Two stages for any scene with a length of its own; by harmonics they would take minutes at tabor 10."""
     if scene.material.finite:
@@ -153,15 +158,27 @@ def harmonics(scene):
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 
 
+def numbers(state):
+    """Numbers of a located state by name."""
+    return {name: float(v) for name, v in zip(QUANTITIES, state.point.observables, strict=True)}
+
+
 def of_state(state):
     """Numbers of located events, and the energy."""
-    found = {name: state[name].point.observables for name in state if is_event(name)}
-    told = {f"{name} {q}": float(v) for name, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}
+    found = {name: numbers(state[name]) for name in state if is_event(name)}
+    told = {f"{name} {q}": v for name, own in found.items() for q, v in own.items()}
     return told | {"energy": energy_released(state["separated"], state["zero_approach"])}
+
+
+def state_of(path, coordinate, branch, value):
+    """The state at a value of a coordinate on a branch of a path, on the grid on which it was traced."""
+    asked = path.at(**{coordinate: value}, branch=branch)
+    there = path.states(Condition(QUANTITIES.index(coordinate), value=value))
+    return min(there, key=lambda state: abs(state.point.observables[2] - asked.central_gap))
 
 
 def points_on(stage, path, places):
     """Points of a curve at some places, solved for on a stage in the plane across the path."""
     points = [Located(FOLD, part.problem, point, 1.0) for part in path.finest_curve.segments for point in part.points]
-    found = {k: required(placed(stage, points[k])).point.observables for k in places}
-    return {f"point {k} {q}": float(v) for k, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}
+    found = {k: numbers(required(placed(stage, points[k]))) for k in places}
+    return {f"point {k} {q}": v for k, own in found.items() for q, v in own.items()}
