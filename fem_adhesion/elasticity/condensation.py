@@ -46,13 +46,19 @@ class Dissection(Valued):
         (regions, beside), inside, outside = self._regions, self.space.inside, self._outside
         unknowns, gathered = self._unknowns
         cells = reduced_cells(cells, gathered)
-        order = np.append(inside, outside)
-        interiors, cells = eliminated_by(cells[:, order[:, None], order], unknowns[inside].T, unknowns[outside].T)
+        own, shared = cells[:, inside], cells[:, outside]
+        interiors, cells = eliminated_by(
+            own[..., inside], own[..., outside], shared[..., outside], unknowns[inside].T, unknowns[outside].T
+        )
         fronts, K = regions.factorised(cells)
-        places = np.searchsorted(regions.unknowns, np.append(beside, self.surface))
-        held = with_exterior(regions, K, self.exterior)[places][:, places]
-        last, stiffness = eliminated_by(held, beside, self.surface)
+        done, left = (np.searchsorted(regions.unknowns, part) for part in (beside, self.surface))
+        K = with_exterior(regions, K, self.exterior)
+        last, stiffness = eliminated_by(K[done][:, done], K[done][:, left], K[left][:, left], beside, self.surface)
         return Factors([interiors, *fronts, last], self.surface, stiffness)
+
+    def forget(self) -> None:
+        """Free the memory of the regions, which are made anew when asked for."""
+        self.__dict__.pop("_regions", None)
 
     @cached_property
     def _regions(self) -> tuple[Region, Index]:

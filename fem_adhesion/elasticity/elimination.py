@@ -59,8 +59,7 @@ class Region(Valued):
         fronts = []
 
         def by_front(region: Region, done: Array, beside: Array, left: Array) -> None:
-            whole = np.block([[mirrored(done), beside], [beside.T, mirrored(left)]])
-            front, left[:] = eliminated_by(whole, region.complete, region.unknowns)
+            front, left[:] = eliminated_by(mirrored(done), beside, left, region.complete, region.unknowns)
             fronts.append(front)
 
         return fronts, self._reduced(K, by_front)
@@ -187,16 +186,14 @@ def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
     return made[0]
 
 
-def eliminated_by(K: Array, done: Index, left: Index) -> tuple[Front, Array]:
-    """What the first unknowns are recovered by, and the stiffness without them; it need not be positive definite.
+def eliminated_by(K_cc: Array, K_ck: Array, K_kk: Array, done: Index, left: Index) -> tuple[Front, Array]:
+    """What unknowns are recovered by, and the stiffness without them; theirs need not be positive definite.
 
-    Or those of each of many cells, K (cells, n, n).
+    Or those of each of many cells, K_cc (cells, c, c).
     """
-    count = done.shape[-1]
-    inverse = inverses(K[..., :count, :count])
-    recovery = np.concatenate([inverse, -inverse @ K[..., :count, count:]], axis=-1)
-    front = Front(done, left, recovery)
-    return front, K[..., count:, count:] + K[..., count:, :count] @ front.carried
+    inverse = inverses(K_cc)
+    front = Front(done, left, np.concatenate([inverse, -inverse @ K_ck], axis=-1))
+    return front, K_kk + K_ck.swapaxes(-1, -2) @ front.carried
 
 
 def inverses(blocks: Array) -> Array:

@@ -41,8 +41,10 @@ from halfspace.errors import InputError
 from halfspace.limits import require_between
 from halfspace.values import Array, Index, Valued
 
-TRANSPOSED = ((1, 2), (3, 4))
-"""Positions of the components of A in the r-z plane: A[i][j] = du_i/dX_j."""
+
+def in_plane(components: Array) -> Array:
+    """Those in the r-z plane of five, as a matrix (2, 2, ...): A[i][j] = du_i/dX_j."""
+    return components[1:].reshape(2, 2, *components.shape[1:])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,13 +111,9 @@ def stress(state: Deformation, shear: float, pressure: Array | float) -> Array:
     The pressure p is lambda ln(J)/delta, or that of the mixed form: positive in tension.
     """
     A, f = state.gradient, state.inverse_transpose
-    stress = np.empty_like(A)
-    stress[0] = A[0] * (1 + f[0])
-    for i in range(2):
-        for j in range(2):
-            turned = sum(f[TRANSPOSED[i][k]] * A[TRANSPOSED[j][k]] for k in range(2))
-            stress[TRANSPOSED[i][j]] = A[TRANSPOSED[i][j]] + turned
-    return np.asarray(shear * stress + pressure * f)
+    turned = f * A  # F^-T A^T, of the hoop
+    in_plane(turned)[:] = np.einsum("ik...,jk...->ij...", in_plane(f), in_plane(A))
+    return np.asarray(shear * (A + turned) + pressure * f)
 
 
 def geometric_moduli(state: Deformation) -> Array:
@@ -123,8 +121,7 @@ def geometric_moduli(state: Deformation) -> Array:
     f = state.inverse_transpose
     moduli = np.zeros((5, *f.shape))
     moduli[0, 0] = f[0] ** 2
-    for i, j, k, m in np.ndindex(2, 2, 2, 2):
-        moduli[TRANSPOSED[i][j], TRANSPOSED[k][m]] = f[TRANSPOSED[i][m]] * f[TRANSPOSED[k][j]]
+    moduli[1:, 1:] = np.einsum("im...,kj...->ijkm...", in_plane(f), in_plane(f)).reshape(4, 4, *f.shape[1:])
     return moduli
 
 

@@ -14,19 +14,20 @@ c = 0 it is a vertical traction per deformed area.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from fem_adhesion.elasticity.condensation import Dissection
 from fem_adhesion.elasticity.exterior import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.body import Body, material_body
-from fem_adhesion.finite_strain.held import HeldBody, Tangent
+from fem_adhesion.finite_strain.held import HeldBody
 from fem_adhesion.finite_strain.settings import USUAL, Settings
 from fem_adhesion.finite_strain.traction import ContactSurface, Convention, Traction, columns, contact_surface
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem, Solver
+from halfspace.equilibrium.newton import NEWTON
 from halfspace.errors import IllPosed, InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
@@ -167,30 +168,20 @@ class FiniteStrainProblem(Valued):
     def state_from_surface(self, state: Array, near: Array | None = None) -> Array:
         """State of the body under the pressure that the gaps of an interface's state make, as a start.
 
-        By steps with the undeformed body's tangent, or the one at hand where a state is near, as long as they converge,
-        else with that of where they led; the first alone gives the linear body.
+        From the undeformed body, or from a state near, by the body's tangent alone: with that of the forces that follow
+        the surface, too, first steps may be ten times as long. The first step gives the linear body.
         """
         law, mu, how = self.interface.law, self.tabor, self.held.settings
         P, Phi = law.pressure(state[:-2], mu), law.energy(state[:-2], mu)
-        tangent, last = self.held.undeformed if near is None else self.held.near, np.inf
-        y = tangent.y if near is None else near[:-1]
-        solve = self._under(tangent, np.zeros(2 * self.surface.unknowns.shape))
+        y = np.zeros(self.held.size) if near is None else near[:-1]
+        m = self.surface.unknowns.size
         for _ in range(how.start_steps):
-            unbalanced = np.append(self._unbalanced(y, P, Phi), 0.0)
-            dy = -solve(unbalanced)[:-1]
-            if not np.abs(dy).max() < how.start_slow * last:
-                follower = self.traction.tangent(self.surface_unknowns(y), P, Phi, 0 * P)
-                solve = self._under(self.held.tangent(y), follower)
-                dy = -solve(unbalanced)[:-1]
-            y, last = y + self._unturned(y, dy, 1.0) * dy, float(np.abs(dy).max())
-            if last < how.start_accuracy * np.abs(y).max():
+            solve = self.held.solver(y, np.zeros((m, m + 1)), np.eye(1, m + 1, m)[0])
+            dy = -solve(np.append(self._unbalanced(y, P, Phi), 0.0), NEWTON.rough)[:-1]
+            y = y + self._unturned(y, dy, 1.0) * dy
+            if np.abs(dy).max() < how.start_accuracy * np.abs(y).max():
                 break
         return np.append(y, state[-2])
-
-    def _under(self, tangent: Tangent, follower: Array) -> Callable[[Array], Array]:
-        """Solver under forces of the surface with this derivative by its unknowns, (m, m), at a fixed approach."""
-        m = len(follower)
-        return tangent.bordered(np.column_stack([follower, np.zeros(m)]), np.eye(1, m + 1, m)[0])
 
     def _surface_change(self, dx: Array) -> Array:
         deflected = self.tabor * (self.surface.vertical @ self.surface_unknowns(dx))
@@ -318,7 +309,12 @@ def finite_strain_problem(
     whole = with_interiors(exterior, space, body.unknowns - space.unknowns)
     surface = contact_surface(space, whole, space.degree + 2 if points is None else points)
     interface = ContactProblem(surface.rigid, tabor, law, profile)
-    return FiniteStrainProblem(HeldBody(body, whole, surface.unknowns, settings), surface, interface, convention)
+    return FiniteStrainProblem(
+        HeldBody(body, Dissection(space, body.cell_dofs.T, whole, surface.unknowns), settings),
+        surface,
+        interface,
+        convention,
+    )
 
 
 def assemble(

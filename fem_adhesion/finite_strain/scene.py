@@ -33,7 +33,7 @@ from halfspace.accuracy.refinement import ascend, climb
 from halfspace.accuracy.stages import Rung, State, on_all
 from halfspace.accuracy.standing import Standing, WhereAsked
 from halfspace.elastic import grid
-from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts
+from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts, transfer
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -213,18 +213,19 @@ class Raising(Standing):
 def raised(event: Located, problem: FiniteStrainProblem) -> Located | Unsolved:
     """Solve for an event of the linear body at finite strain, raising delta in as many parts as that takes.
 
-    First the linear body is solved on the mesh of the problem. A state is the start for the next one as it is: at the
-    same gaps the law's forces are the same, and only those of the body change. Unsolved if a small part of delta is too
-    much.
+    The start is the linear body under the pressure that its gaps make. A state is the start for the next one as it is:
+    at the same gaps the law's forces are the same, and only those of the body change. Unsolved if a small part of delta
+    is too much.
     """
-    found, done, part = moved(event, problem.stretched(0.0)), 0.0, problem.stretch
+    found: Located | Unsolved = event
+    start, done, part = transfer(event.problem, event.point.x, problem.stretched(0.0)), 0.0, problem.stretch
     least = problem.held.settings.smallest_part
     while found and done < problem.stretch:
         last = done + part >= (1 - least) * problem.stretch
         target = problem if last else problem.stretched(done + part)
-        farther = relocate(found, target, found.point.x, metric_for(target))
+        farther = relocate(found, target, start, metric_for(target))
         if farther:
-            found, done = farther, target.stretch
+            found, start, done = farther, farther.point.x, target.stretch
             continue
         part /= 2
         if part < least:

@@ -272,6 +272,8 @@ def turning_point(
             if not abs(step) <= reach:
                 break
             dx = dx + step * here.tangent + step**2 / 2 * bend
+        elif iteration > 1:  # from farther off steps lead nowhere
+            break
         update = problem.size(x, dx)
         if not math.isfinite(update):
             break
