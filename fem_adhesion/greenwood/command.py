@@ -19,9 +19,10 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.common.files import directory_written_aside, writing
     from fem_adhesion.greenwood import page
     from fem_adhesion.greenwood import study as greenwood
+    from fem_adhesion.greenwood.figures import FIGURES
 
     with directory_written_aside(options.out, force=options.force) as aside, progress_bar() as progress:
-        begin = in_turn(progress, len(greenwood.SUBJECTS) + len(page.FIGURES))
+        begin = in_turn(progress, len(greenwood.SUBJECTS) + len(FIGURES))
         study = greenwood.compute(quick=options.quick, begin=begin)
         with writing(options.out):
             page.write(study, aside, begin)

@@ -1,7 +1,8 @@
-"""The lines of the figures: functions by which ``data/figures.toml`` says what is drawn in each.
+"""The figures as ``data/figures.toml`` has them, and the functions by which it says what is drawn in each.
 
-A function has the study, the figure without lines, whose axes it heeds, and what stands in its entry; it yields lines,
-notes and sentences on what is to be seen. What the figures show of the paper's claims, the claims tell.
+A function that yields `Parts` has the study, the figure without lines, whose axes it heeds, and what stands in its
+entry: it yields lines, notes and sentences on what is to be seen. What the figures show of the paper's claims, the
+claims tell.
 """
 
 from __future__ import annotations
@@ -10,7 +11,6 @@ import math
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -27,12 +27,12 @@ from halfspace.equilibrium.devices import Jump
 from halfspace.equilibrium.events import is_fold
 from halfspace.theories import closed_forms, dmt
 from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off, carpick_radius
-from halfspace.values import Array, Estimate, States
+from halfspace.values import Array, States
 
-Made = Callable[[Facts], Plot]
 Parts = Iterator[Line | Note | str]
-DATA = tomllib.loads(data_text("greenwood", "figures.toml"))
-AXES, LOOKS, LETTERS = (DATA.pop(name) for name in ("axes", "looks", "letters"))
+FIGURES = tomllib.loads(data_text("greenwood", "figures.toml"))
+"""Entry of each figure by the name of its files: those of the paper, and further ones."""
+AXES, LOOKS, LETTERS = (FIGURES.pop(name) for name in ("axes", "looks", "letters"))
 MARKS: Look = {"linestyle": "none", "marker": "o", "markersize": 5, "markerfacecolor": "white"}
 
 
@@ -43,13 +43,9 @@ def look_of(kind: str, which: str | float, **more: Any) -> Look:
     return {**dict(zip(("color", "linestyle", "linewidth"), values, strict=False)), **more}
 
 
-def figures() -> dict[str, tuple[str, Made]]:
-    """Title of each figure, and what makes its plot, by the name of its files."""
-    return {stem: (figure["title"], partial(_plot, figure)) for stem, figure in DATA.items()}
-
-
-def _plot(figure: Mapping[str, Any], study: Facts) -> Plot:
-    """Plot of an entry of the file."""
+def plotted(stem: str, study: Facts) -> Plot:
+    """Plot of a figure."""
+    figure = FIGURES[stem]
     x, y = (Axis(**AXES[name], limits=tuple(limits)) for name, *limits in (figure["x"], figure["y"]))
     label, scale = figure.get("above", ("", ""))
     above = (label, float(getattr(scaling, scale).of(1.0))) if scale else None
@@ -57,7 +53,7 @@ def _plot(figure: Mapping[str, Any], study: Facts) -> Plot:
     parts: list[Line | Note | str] = []
     for entry in figure["lines"]:
         (name, first), *others = entry.items()
-        parts += LINES[name](study, blank, first, **dict(others))
+        parts += globals()[name](study, blank, first, **dict(others))
     lines, see = [part for part in parts if isinstance(part, Line)], [part for part in parts if isinstance(part, str)]
     return replace(blank, lines=lines, see=see, notes=[part for part in parts if isinstance(part, tuple)])
 
@@ -134,42 +130,38 @@ def jumps(study: Facts, _: Plot, margins: Sequence[float]) -> Parts:
     """The jumps at fixed grips and in an apparatus, along its load lines."""
     mu, k = study.settings.jumps_at, study.settings.apparatus
     for letters, jump in study.jumps.items():
-        primed = "'" in letters[0]
-        line = jump_line(
-            f"jump {' to '.join(letters)}", mu, jump, {"color": PINK if primed else "black", "linewidth": 1.4}
-        )
-        yield line
-        yield from (
-            (letter, (at.approach, at.load), tuple(LETTERS[letter]))
-            for letter, at in zip(letters, jump.ends, strict=True)
-        )
+        primed = letters[0].endswith("'")
+        look: Look = {"color": PINK if primed else "black", "linewidth": 1.4}
+        yield (line := jump_line(f"jump {' to '.join(letters)}", mu, jump, look))
+        for letter, at in zip(letters, jump.ends, strict=True):
+            yield letter, (at.approach, at.load), tuple(LETTERS[letter])
         if primed:
             approach = np.array([line.x.min() - margins[0], line.x.max() + margins[0]])
             label = rf"load lines, $k = {k:g}\,R\Delta\gamma/\epsilon$" if letters[0] == "A'" else ""
-            look: Look = {"color": PINK, "linestyle": DOTTED, "linewidth": 1.2}
+            dotted: Look = {"color": PINK, "linestyle": DOTTED, "linewidth": 1.2}
             load = line.y[0] - k * (approach - line.x[0])
-            yield Line(f"load line of {letters[0]}", mu, approach, load, look, label=label)
+            yield Line(f"load line of {letters[0]}", mu, approach, load, dotted, label=label)
 
 
 def apparatus(study: Facts, _: Plot, stiffnesses: Sequence[float]) -> Parts:
     """Jumps in apparatus of several stiffnesses."""
-    for cycle in study.cycles:
-        if (k := cycle.stiffness) in stiffnesses:
-            look = look_of("stiffness", k)
-            name, label = f"apparatus {k:g} R dgamma/eps", rf"$k = {k:g}\,R\Delta\gamma/\epsilon$"
-            if math.isinf(k):
-                name = label = "fixed grips"
-            yield jump_line(f"{name}, jump on", study.settings.devices_at, cycle.jump_on, look, label)
-            yield jump_line(f"{name}, jump off", study.settings.devices_at, cycle.jump_off, look)
+    mu = study.settings.devices_at
+    for cycle in (cycle for cycle in study.cycles if cycle.stiffness in stiffnesses):
+        k = cycle.stiffness
+        name, label = f"apparatus {k:g} R dgamma/eps", rf"$k = {k:g}\,R\Delta\gamma/\epsilon$"
+        if math.isinf(k):
+            name = label = "fixed grips"
+        yield jump_line(f"{name}, jump on", mu, cycle.jump_on, look_of("stiffness", k), label)
+        yield jump_line(f"{name}, jump off", mu, cycle.jump_off, look_of("stiffness", k))
 
 
-def border(study: Facts, _: Plot, places: Sequence[tuple[float, float]]) -> Parts:
+def border(study: Facts, _: Plot, places: Sequence[Sequence[float]]) -> Parts:
     """Stiffness below which a contact jumps, against the Tabor parameter; words at three places."""
     critical = study.critical_tabor
     tabor, least = study.border.T
     yield Line("border", None, tabor, least, {"color": BLUE, "linewidth": 2}, label="least without a jump")
     words = "follows smoothly", "jumps", rf"fixed grips jump from $\mu = {digits(critical)}$"
-    yield from ((text, (place[0], place[1])) for text, place in zip(words, places, strict=True))
+    yield from ((text, (x, y)) for text, (x, y) in zip(words, places, strict=True))
     yield told(f"Fixed grips jump from mu = {plus_minus(critical)} on.", critical.value, critical.error)
 
 
@@ -235,20 +227,19 @@ def carpick(study: Facts, _: Plot, tabors: Sequence[float]) -> Parts:
 # Numbers against the Tabor parameter
 
 
-def pull_offs(
-    study: Facts, _: Plot, solver: str, look: Look = MARKS, label: str | None = None, above: float = 0.0
+def forces(
+    study: Facts, _: Plot, which: str, look: Look = MARKS, label: str | None = None, above: float = 0.0
 ) -> Parts:
     """Pull-off forces by a solver with their errors, above a Tabor parameter."""
-    found: list[tuple[float, Estimate | None]] = [(p.tabor, getattr(p, solver)) for p in study.pull_offs]
-    rows = [(mu, -load.value, load.error) for mu, load in found if load and mu > above]
+    rows = [(mu, -load.value, load.error) for mu, load in getattr(study, which).items() if mu > above]
     tabor, force, error = np.reshape(rows, (-1, 3)).T
-    name = {"half_space": HALF_SPACE, "finite_element": ELEMENTS}[solver]
+    name = HALF_SPACE if which == "pull_offs" else ELEMENTS
     yield Line(name, None, tabor, force, {"color": BLUE, **look}, None, error, label=label)
 
 
 def pull_off_theories(study: Facts, _: Plot, attard: Sequence[tuple[float, float]]) -> Parts:
     """Pull-off forces after Maugis, by the values of Attard & Parker over pi that [G97] quotes, and in the limits."""
-    tabor = np.array([p.tabor for p in study.pull_offs])
+    tabor = np.array([*study.pull_offs])
     maugis = np.array([-MaugisDugdale.matched(mu).pull_off().load for mu in tabor])
     yield Line("Maugis-Dugdale", None, tabor, maugis, {"color": GREEN, "linestyle": CHAIN})
     mu, force = np.transpose(attard)
@@ -261,18 +252,15 @@ def pull_off_theories(study: Facts, _: Plot, attard: Sequence[tuple[float, float
 def criteria(study: Facts, _: Plot, quantity: str) -> Parts:
     """Central gap or approach at jump-on plus one over mu^(3/7): true jumps as markers, and what criteria predict."""
     sign = 1 if quantity == "central_gap" else -1
-
-    def scaled(values: Array, tabor: Array) -> Array:
-        return np.asarray((1 + sign * values) / tabor ** (3 / 7))
-
-    found = [jump.estimate(quantity) for jump in study.jumps_on.values()]
-    mu, true, errors = np.array([*study.jumps_on]), [jump.value for jump in found], [jump.error for jump in found]
-    look = {**MARKS, "color": "black"}
-    yield Line("true jumps", None, mu, scaled(np.array(true), mu), look, None, np.array(errors) / mu ** (3 / 7))
+    numbers = [(mu, jump.estimate(quantity)) for mu, jump in study.jumps_on.items()]
+    mu, true, errors = np.reshape([(mu, number.value, number.error) for mu, number in numbers], (-1, 3)).T
+    unit = mu ** (3 / 7)
+    yield Line("true jumps", None, mu, (1 + sign * true) / unit, {**MARKS, "color": "black"}, None, errors / unit)
     tabor = np.geomspace(0.72, max(mu, default=1.0), 200)
     for one in study.criteria:
         if one.predict and one.of_approach == (quantity == "approach"):
-            yield Line(one.name, None, tabor, scaled(one.predict(tabor), tabor), look_of("criterion", one.name))
+            scaled = (1 + sign * one.predict(tabor)) / tabor ** (3 / 7)
+            yield Line(one.name, None, tabor, scaled, look_of("criterion", one.name))
 
 
 def coarse(study: Facts, _: Plot, which: str) -> Parts:
@@ -290,12 +278,3 @@ def coarse(study: Facts, _: Plot, which: str) -> Parts:
     least = listed([f"{-r.pull_off:.3f} at {r.spacing:g} beta" for r in study.ripples])
     resolved = -study.curves[study.settings.ripple_at].events["pull_off"].load
     yield f"The largest tension is {least}, where it is {resolved:.3f} R dgamma."
-
-
-LINES: Mapping[str, Callable[..., Parts]] = {
-    make.__name__: make
-    for make in (
-        *(half_space, elements, specified, turns, folds, profiles, jumps, apparatus, border, theory, carpick),
-        *(pull_offs, pull_off_theories, criteria, coarse),
-    )
-}

@@ -213,7 +213,7 @@ def crossings_of_jkr(f: Facts, tabor: float) -> Estimate:
     """How often the curve crosses JKR's, both as polygons."""
     path, radius = f.paths[tabor].resampled(400), np.linspace(1e-4, 4, 4000)
     jkr = closed_forms.jkr_approach(radius, tabor), closed_forms.jkr_load(radius)
-    return count(len(crossings(np.column_stack([path.approach, path.load]), np.column_stack(jkr))))
+    return count(crossings(np.column_stack([path.approach, path.load]), np.column_stack(jkr)))
 
 
 def radius_below_nose(f: Facts, tabor: float) -> Estimate:

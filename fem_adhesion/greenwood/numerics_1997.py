@@ -18,6 +18,7 @@ from functools import partial
 import numpy as np
 
 from fem_adhesion.common import relaxation
+from fem_adhesion.common.fold_birth import approached
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.kernel import ring_kernel
@@ -152,10 +153,7 @@ def attempts(
         outer = EXTENT / np.sqrt(min(tabor, 1.0))
         problem = ContactProblem(compliance.triangles(grid.uniform(outer, outer / (NODES - 1))), tabor)
         began = time.perf_counter()
-        x = problem.undeformed(-6.0)
-        for gap in (5, 3, 2, 1.5, 1, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.0):
-            solution = newton.solve(problem, x, newton.central_gap(gap))
-            x = solution.x
+        solution = newton.solve(problem, approached(problem, 0.02), CONTACT)
         spent, load = time.perf_counter() - began, float(solution.observables[LOAD])
         start = problem.undeformed(1.0)
         start[:-2] = np.maximum(start[:-2], 0.0)

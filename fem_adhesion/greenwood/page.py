@@ -14,17 +14,14 @@ from fem_adhesion.common.page import Columns, Section, Table, bullets, said, tit
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import claims
 from fem_adhesion.greenwood.drawing import Plot, drawn, elements_beside, table
-from fem_adhesion.greenwood.facts import FULL, Facts, PullOff
-from fem_adhesion.greenwood.figures import figures
+from fem_adhesion.greenwood.facts import FULL, Facts
+from fem_adhesion.greenwood.figures import FIGURES, plotted
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt, Ripple
 from fem_adhesion.greenwood.tables import Printed, is_rounded
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event
 from halfspace.theories.criteria import fundamental_criterion
 from halfspace.values import Estimate
-
-FIGURES = figures()
-"""Title of each figure, and what makes its plot, by the name of its files: those of the paper, and further ones."""
 
 
 def write(study: Facts, directory: Path, begin: Callable[[str], None] = lambda _: None) -> None:
@@ -33,11 +30,11 @@ def write(study: Facts, directory: Path, begin: Callable[[str], None] = lambda _
     Give it a directory made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none;
     `begin` is called with what is drawn next, once for each of `FIGURES`.
     """
-    plots, judged = {stem: made(study) for stem, (_, made) in FIGURES.items()}, claims.judged(study)
+    plots, judged = {stem: plotted(stem, study) for stem in FIGURES}, claims.judged(study)
     pictures = [_picture(stem, plot, judged) for stem, plot in plots.items()]
     draw(pictures, study, directory, begin)
     written, held = list(tables(study)), claims.tables(judged, study)
-    data = [table(stem, FIGURES[stem][0], plot) for stem, plot in plots.items()]
+    data = [table(stem, FIGURES[stem]["title"], plot) for stem, plot in plots.items()]
     write_csv([*held, *written, *data, captions(pictures, study)], directory)
     sections = [
         Section("figures", "Figures", figures=shown(pictures, study, directory)),
@@ -51,7 +48,7 @@ def write(study: Facts, directory: Path, begin: Callable[[str], None] = lambda _
 def _picture(stem: str, plot: Plot, judged: Sequence[claims.Judged]) -> Picture[Facts]:
     """A plot with what is to be seen: its own sentences, how near finite elements are, and the claims it shows."""
     see = [*plot.see, elements_beside(plot.lines), claims.caption(stem, judged)]
-    return Picture(stem, FIGURES[stem][0], lambda _: drawn(plot), lambda _: see)
+    return Picture(stem, FIGURES[stem]["title"], lambda _: drawn(plot), lambda _: see)
 
 
 def lead(study: Facts) -> Iterator[str]:
@@ -78,13 +75,14 @@ def tables(study: Facts) -> Iterator[Table]:
     yield _jumps(study)
     yield _cycles(study)
     yield _relaxations(study.relaxations)
-    pull_offs: Columns[PullOff] = {
-        "mu": lambda p: f"{p.tabor:.6g}",
-        ("half-space, R dgamma", "half-space, error, R dgamma"): lambda p: _cells(p.half_space),
-        ("finite elements, R dgamma", "finite elements, error, R dgamma"): lambda p: _cells(p.finite_element),
+    elements = study.element_pull_offs
+    pull_offs: Columns[float] = {
+        "mu": lambda mu: f"{mu:.6g}",
+        ("half-space, R dgamma", "half-space, error, R dgamma"): lambda mu: _cells(study.pull_offs[mu]),
+        ("finite elements, R dgamma", "finite elements, error, R dgamma"): lambda mu: _cells(elements.get(mu)),
     }
-    both = [p.agree for p in study.pull_offs if p.finite_element]
-    yield Table.of(*titled("greenwood", "pull_off", agree=sum(both), both=len(both)), study.pull_offs, pull_offs)
+    agree = sum(load.agrees(study.pull_offs[mu]) for mu, load in elements.items())
+    yield Table.of(*titled("greenwood", "pull_off", agree=agree, both=len(elements)), study.pull_offs, pull_offs)
     yield _rises(study)
     yield _true_jumps(study)
     yield _constants(study)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -13,7 +13,6 @@ from fem_adhesion.common.page import data_rows
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import Event
 from halfspace.laws import LENNARD_JONES
 from halfspace.theories import criteria, dmt
 from halfspace.values import Array, Estimate, Valued
@@ -66,73 +65,66 @@ def table_1() -> list[Printed]:
 def excess_asymptote() -> tuple[Estimate, Estimate]:
     """Constants of f = a alpha*^(3/2) - b alpha*^2, fitted between 2e-5 and 1e-4: 1.84 and 7.7 in the paper."""
     alpha = np.geomspace(2e-5, 1e-4, 30)
-    ratio = dmt.force_excess(alpha) / alpha**1.5
-    values, errors = least_squares(lambda root, a, b: a - b * root, np.sqrt(alpha), ratio, (1.84, 7.7))
-    a, b = map(Estimate, values.tolist(), errors.tolist())
-    return a, b
-
-
-def least_squares(formula: Callable[..., Array], x: Array, y: Array, start: Sequence[float]) -> tuple[Array, Array]:
-    """Constants of a formula and their standard errors."""
-    values, covariance = curve_fit(formula, x, y, start)
-    return values, np.sqrt(np.diag(covariance))
+    (slope, a), covariance = np.polyfit(np.sqrt(alpha), dmt.force_excess(alpha) / alpha**1.5, 1, cov=True)
+    slope_error, a_error = np.sqrt(np.diag(covariance)).tolist()
+    return Estimate(float(a), a_error), Estimate(-float(slope), slope_error)
 
 
 def table_2(paths: Mapping[float, EquilibriumPath]) -> list[Printed]:
-    """Table 2, jumping on and off, from converged paths at those of its Tabor parameters that are given."""
+    """Table 2, jumping on and off, from converged paths."""
     rows = data_rows("greenwood", "greenwood1997_table2.csv")
-    return [entry for row in rows for mu in TABORS if mu in paths for entry in _entries(row, paths[mu])]
+    return [entry for row in rows for mu in TABORS if (entry := _entry(row, paths[mu]))]
 
 
-def _entries(row: Mapping[str, str], path: EquilibriumPath) -> Iterator[Printed]:
+def _entry(row: Mapping[str, str], path: EquilibriumPath) -> Printed | None:
+    """A printed number of Table 2, if there is one, beside that of a path."""
     name, quantity, mu = row["event"], row["quantity"], path.tabor
     printed, event = row[f"mu={mu:g}"], path.event(name)
-    if printed and event:
-        computed, unit = _quantity(quantity, event, mu)
-        note = "" if is_rounded(printed, computed) else explained(name, quantity, path, computed)
-        sizes = {"minus_alpha_star": path.approach_scale, "minus_alpha_star_over_mu": path.approach_scale / mu}
-        yield Printed(f"{name} {quantity}", mu, unit, printed, computed, note or LAST_DIGIT, sizes.get(quantity))
-
-
-def _quantity(quantity: str, event: Event, tabor: float) -> tuple[Estimate, str]:
-    """A quantity of Table 2 at an event, and its unit."""
+    if not (printed and event):
+        return None
     if quantity == "minus_W_over_R_dgamma_AP":
-        load = -float(criteria.undeformed_load(criteria.closed_gap(tabor, criteria.ATTARD_PARKER)))
-        return Estimate(load, ROUNDING * load), "R dgamma"
-    name, size, shift, unit = {
-        "minus_alpha_star": ("approach", -1.0, 0.0, "eps"),
-        "minus_alpha_star_over_mu": ("approach", -tabor, 0.0, "beta^2/R"),
-        "minus_W_over_R_dgamma": ("load", -1.0, 0.0, "R dgamma"),
-        "H0": ("central_gap", 1.0, 0.0, "eps"),
-        "H0_plus_1_over_mu_3_7": ("central_gap", tabor ** (3 / 7), 1.0, "1"),
-        "a_star": ("contact_radius", 1.0, 0.0, "beta"),
-    }[quantity]
-    return (event.estimate(name) + shift) / size, unit
+        load = -float(criteria.undeformed_load(criteria.closed_gap(mu, criteria.ATTARD_PARKER)))
+        computed, unit = Estimate(load, ROUNDING * load), "R dgamma"
+    else:
+        of_event, size, shift, unit = {
+            "minus_alpha_star": ("approach", -1.0, 0.0, "eps"),
+            "minus_alpha_star_over_mu": ("approach", -mu, 0.0, "beta^2/R"),
+            "minus_W_over_R_dgamma": ("load", -1.0, 0.0, "R dgamma"),
+            "H0": ("central_gap", 1.0, 0.0, "eps"),
+            "H0_plus_1_over_mu_3_7": ("central_gap", mu ** (3 / 7), 1.0, "1"),
+            "a_star": ("contact_radius", 1.0, 0.0, "beta"),
+        }[quantity]
+        computed = (event.estimate(of_event) + shift) / size
+    note = LAST_DIGIT if is_rounded(printed, computed) else explained(name, quantity, path, computed)
+    scales = {"minus_alpha_star": path.approach_scale, "minus_alpha_star_over_mu": path.approach_scale / mu}
+    return Printed(f"{name} {quantity}", mu, unit, printed, computed, note, scales.get(quantity))
 
 
 def explained(name: str, quantity: str, path: EquilibriumPath, computed: Estimate) -> str:
     """What explains a printed number that is off: each explanation is tried on the numbers of its column."""
     column, mu = printed_column(name, path.tabor), path.tabor
-    printed, approach = column[quantity], column["minus_alpha_star"]
-    exchanged = _exchanged(approach, mu, column.get("minus_alpha_star_over_mu", ""))
-    note = ""
-    if quantity == "H0_plus_1_over_mu_3_7":
-        if _gives(column["H0"], mu ** (3 / 7), printed, shift=1):
-            note = f"follows from the printed H0 = {column['H0']}"
-    elif quantity == "minus_alpha_star_over_mu":
-        if exchanged:
-            note = f"follows from alpha* = -{exchanged}, not from the printed -{approach}"
-        elif _gives(approach, mu, printed):
-            note = f"follows from the printed alpha* = -{approach}"
-    elif quantity == "minus_alpha_star":
-        ratio = column.get("minus_alpha_star_over_mu")
-        notes = [f"digits exchanged, as {exchanged}/{mu:g} is the {ratio} of the next row"] if exchanged else []
-        if float(approach) + last_digit(approach) / 2 < computed.value - computed.error:
-            notes.append(SHORT_OF_THE_FOLD[name])
-        note = "; ".join(notes)
-    else:
-        note = _beside(name, quantity, column, path)
-    return note or f"{UNEXPLAINED}: off by {computed.value - float(printed):+.1e}"
+    printed, approach, ratio = (
+        column.get(key, "") for key in (quantity, "minus_alpha_star", "minus_alpha_star_over_mu")
+    )
+    exchanged = _exchanged(approach, mu, ratio)
+    short = float(approach) + last_digit(approach) / 2 < computed.value - computed.error
+    tries: Mapping[str, Sequence[tuple[bool | str, str]]] = {
+        "H0_plus_1_over_mu_3_7": [
+            (_gives(column["H0"], mu ** (3 / 7), printed, shift=1), f"follows from the printed H0 = {column['H0']}")
+        ],
+        "minus_alpha_star_over_mu": [
+            (exchanged, f"follows from alpha* = -{exchanged}, not from the printed -{approach}"),
+            (_gives(approach, mu, printed), f"follows from the printed alpha* = -{approach}"),
+        ],
+        "minus_alpha_star": [
+            (exchanged, f"digits exchanged, as {exchanged}/{mu:g} is the {ratio} of the next row"),
+            (short, SHORT_OF_THE_FOLD[name]),
+        ],
+    }
+    notes = [text for holds, text in tries.get(quantity, ()) if holds]
+    if quantity not in tries:
+        notes = [_beside(name, quantity, column, path)]
+    return "; ".join(filter(None, notes)) or f"{UNEXPLAINED}: off by {computed.value - float(printed):+.1e}"
 
 
 SHORT_OF_THE_FOLD = {
@@ -238,22 +230,26 @@ class Criterion(Valued):
 def fit(tabor: Array, central_gap: Array, approach: Array) -> tuple[Criterion, ...]:
     """Refit every criterion by least squares of logarithms to true jumps: gaps and approaches in eps, all (n,)."""
     mu, y, z = tabor, central_gap + 1, 1 - approach
-    formula = "(H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2)"
-    left = np.log(y**3.5 / (np.pi * np.sqrt(2) * mu**1.5))
+    closed, of_gap = "(H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2)", "(H0 + 1)^(7/2) = c mu^(3/2) [1 - n/(H0 + 1)^6]"
+    of_approach, exact = "(|alpha*| + 1)^(7/2) = c mu^(3/2)", {"c": criteria.FIT, "n": criteria.FIT_REPULSION}
     found = [
-        Criterion(name, formula, partial(criteria.closed_gap, k=value), False, *_fitted(_constant, y, left, k=value))
-        for name, value in CLOSED.items()
+        Criterion(
+            *(name, closed, partial(criteria.closed_gap, k=k), False),
+            *_fitted(_constant, y, y**3.5 / (np.pi * np.sqrt(2) * mu**1.5), {"k": k}),
+        )
+        for name, k in CLOSED.items()
     ]
-    fitted = _fitted(_repulsion, y, np.log(y**3.5 / mu**1.5), c=criteria.FIT, n=criteria.FIT_REPULSION)
-    formula = "(H0 + 1)^(7/2) = c mu^(3/2) [1 - n/(H0 + 1)^6]"
-    found.append(Criterion("fit (4.5)", formula, criteria.fitted_gap, False, *fitted))
-    fitted = _fitted(_constant, z, np.log(z**3.5 / mu**1.5), c=3 * np.pi**2)
-    formula = "(|alpha*| + 1)^(7/2) = c mu^(3/2)"
-    found.append(Criterion("fit of App. C", formula, criteria.fitted_approach, True, *fitted))
+    found += [
+        Criterion("fit (4.5)", of_gap, criteria.fitted_gap, False, *_fitted(_repulsion, y, y**3.5 / mu**1.5, exact)),
+        Criterion(
+            *("fit of App. C", of_approach, criteria.fitted_approach, True),
+            *_fitted(_constant, z, z**3.5 / mu**1.5, {"c": 3 * np.pi**2}),
+        ),
+    ]
     far = mu >= REPULSION_GONE
     if far.sum() >= 4:  # 3/7 by every theory, which no one fitted
         for name, symbol, values in (("gap", "H0", y), ("approach", "|alpha*|", z)):
-            fitted = _fitted(_power, np.log(mu[far]), np.log(values[far]), c=None, n=3 / 7)
+            fitted = _fitted(_power, mu[far], values[far], {"c": None, "n": 3 / 7})
             title, formula = f"power of mu, {name}, mu >= {REPULSION_GONE:g}", f"{symbol} + 1 = c mu^n"
             found.append(Criterion(title, formula, None, name == "approach", *fitted))
     return tuple(found)
@@ -268,19 +264,22 @@ def _repulsion(y: Array, log_c: float, n: float) -> Array:
     return np.asarray(log_c + np.log(np.maximum(1 - n / y**6, 1e-6)))
 
 
-def _power(log_x: Array, log_c: float, n: float) -> Array:
-    return np.asarray(log_c + n * log_x)
+def _power(x: Array, log_c: float, n: float) -> Array:
+    return np.asarray(log_c + n * np.log(x))
 
 
-def _fitted(formula: Callable[..., Array], x: Array, y: Array, **printed: float | None) -> tuple[Constants, float]:
+def _fitted(
+    formula: Callable[..., Array], x: Array, left: Array, printed: Mapping[str, float | None]
+) -> tuple[Constants, float]:
     """Constants by name, as printed and refitted with their standard errors, and the scatter of one value.
 
-    The formula has the logarithm of the first constant, and the others as they are.
+    The formula is the logarithm of the left-hand side: it has that of the first constant, and the others as they are.
     """
     first, *others = (value or 1.0 for value in printed.values())
     start = [np.log(first), *others]
-    values, errors = least_squares(formula, x, y, start)
-    scatter = float(np.std(y - formula(x, *values), ddof=len(start)))
+    values, covariance = curve_fit(formula, x, np.log(left), start)
+    errors = np.sqrt(np.diag(covariance))
+    scatter = float(np.std(np.log(left) - formula(x, *values), ddof=len(start)))
     values[0] = np.exp(values[0])
     errors[0] *= values[0]
     fitted = map(Estimate, values.tolist(), errors.tolist())

@@ -22,6 +22,7 @@ from fem_adhesion.greenwood import page as greenwood_page
 from fem_adhesion.greenwood import study as greenwood
 from fem_adhesion.greenwood import tables as greenwood_tables
 from fem_adhesion.greenwood.drawing import ELEMENTS, drawn, elements_beside
+from fem_adhesion.greenwood.figures import FIGURES, plotted
 from fem_adhesion.greenwood.tables import fit
 from halfspace.errors import NotConverged
 from halfspace.theories import criteria, dmt
@@ -29,7 +30,6 @@ from halfspace.theories.closed_forms import bradley_load
 from halfspace.theories.maugis import MaugisDugdale
 from halfspace.values import Estimate
 
-FIGURES = tuple(greenwood_page.FIGURES)
 TABLES = (
     "table_1",
     "table_2",
@@ -186,7 +186,7 @@ CAPTIONED = {  # both columns, and whose lines each figure of the paper shows, w
     "fig_4b": (("radius_beta", "gap_eps"), {"H(0) = 2.554": (5.0,), "H(0) = -0.0036": (5.0,)}),
     "fig_5": (
         ("load_R_dgamma", "contact_radius_beta"),
-        {SOLVED: (0.5, 2.0, 5.0), "finite elements": (2.0,), "JKR": (), "Maugis-Dugdale": (0.5, 2.0)},
+        {SOLVED: (0.5, 2.0, 5.0), "finite elements": (0.5, 2.0), "JKR": (), "Maugis-Dugdale": (0.5, 2.0)},
     ),
     "fig_6a": (SCALED, {"DMT force method": (0.1, 0.2, 0.5, 1.0), "DMT-M": ()}),
     "fig_6b": (SCALED, {SOLVED: (0.05, 0.1, 0.2, 0.5, 1.0), "DMT-M": ()}),
@@ -227,7 +227,7 @@ def figure(study):
     @cache
     def draw(stem):
         with rc_context(style.LOOK):
-            return drawn(greenwood_page.FIGURES[stem][1](study))
+            return drawn(plotted(stem, study))
 
     return draw
 
@@ -369,7 +369,7 @@ def test_figure_4_has_the_printed_centre_and_the_law(lines_in):
 def test_figure_7_has_the_numbers_of_every_theory(study, lines_in, figure):
     _, lines = lines_in("fig_7")
     mu, force = lines[SOLVED, None].T
-    np.testing.assert_allclose(force, [-p.half_space.value for p in study.pull_offs], rtol=1e-9)
+    np.testing.assert_allclose(force, [-load.value for load in study.pull_offs.values()], rtol=1e-9)
     known = {0.05: 6.247560215, 0.5: 5.615543245, 2.0: 4.975011370}
     assert {m: f for m, f in zip(mu, force, strict=True) if m in known} == pytest.approx(
         {m: known[m] for m in mu if m in known}, rel=1e-5
@@ -381,8 +381,7 @@ def test_figure_7_has_the_numbers_of_every_theory(study, lines_in, figure):
     np.testing.assert_allclose(attard, [[1, 1.6 * np.pi], [6.7, 3.4 * np.pi]], rtol=1e-9)
     assert np.all(lines["Bradley", None][:, 1] == pytest.approx(2 * np.pi))
     assert np.all(lines["JKR", None][:, 1] == pytest.approx(1.5 * np.pi))
-    both = [p for p in study.pull_offs if p.finite_element]
-    expected = [[p.tabor, -p.finite_element.value] for p in both]
+    expected = [[mu, -path.event("pull_off").load] for mu, path in study.elements.items()]
     np.testing.assert_allclose(lines["finite elements", None], expected, rtol=1e-9)
     axes = figure("fig_7").axes[0]
     assert axes.child_axes[0].get_xlabel() == r"parameter of Muller et al., $\mu_D$"
@@ -391,9 +390,9 @@ def test_figure_7_has_the_numbers_of_every_theory(study, lines_in, figure):
 def test_crossings_of_two_lines_are_all_found():
     x, level = np.linspace(0.1, 9.3, 401), np.linspace(0, 10, 7)
     wave = np.column_stack([x, np.sin(x)])
-    found = facts.crossings(wave, np.column_stack([level, 0 * level]))
-    np.testing.assert_allclose(found, [[np.pi, 0], [2 * np.pi, 0]], atol=1e-3)
-    assert facts.crossings(wave, np.column_stack([level, 0 * level + 2])).shape == (0, 2)
+    assert facts.crossings(wave, np.column_stack([level, 0 * level])) == 2
+    assert facts.crossings(wave[10:], np.column_stack([level[:2], 0 * level[:2]])) == 0  # it ends before they do
+    assert facts.crossings(wave, np.column_stack([level, 0 * level + 2])) == 0
 
 
 def test_criteria_grids_and_border_stand_in_their_files(study, lines_in, figure):
@@ -469,9 +468,10 @@ def test_cells_of_jumps_and_cycles(study, rows):
 
 
 def test_cells_of_pull_offs_and_coarse_grids(study, rows):
-    for row, p in zip(rows("pull_off"), study.pull_offs, strict=True):
-        assert float(row["mu"]) == pytest.approx(p.tabor, rel=1e-5)
-        for solver, estimate in (("half-space", p.half_space), ("finite elements", p.finite_element)):
+    elements = {mu: path.event("pull_off").estimate("load") for mu, path in study.elements.items()}
+    for row, (mu, load) in zip(rows("pull_off"), study.pull_offs.items(), strict=True):
+        assert float(row["mu"]) == pytest.approx(mu, rel=1e-5)
+        for solver, estimate in (("half-space", load), ("finite elements", elements.get(mu))):
             value, error = row[f"{solver}, R dgamma"], row[f"{solver}, error, R dgamma"]
             if estimate:
                 assert near(value, estimate.value)
@@ -518,7 +518,7 @@ def test_a_caption_tells_what_does_not_hold(judged, report, rows):
     page = html.unescape((report / "index.html").read_text(encoding="utf-8"))
     assert list(captions) == list(FIGURES)
     for stem, caption in captions.items():
-        title, sentences = greenwood_page.FIGURES[stem][0], caption.removeprefix(greenwood_page.FIGURES[stem][0])
+        title, sentences = FIGURES[stem]["title"], caption.removeprefix(FIGURES[stem]["title"])
         assert caption.startswith(f"{title}. ")
         assert symbols(sentences.removeprefix(". ")) in page
         on_it = [c for c in judged if stem in c.claim.shown.split(", ")]
@@ -532,7 +532,7 @@ def test_a_caption_tells_what_does_not_hold(judged, report, rows):
 
 
 def test_finite_elements_far_from_the_line_are_told(study):
-    plot = greenwood_page.FIGURES["fig_2b"][1](study)
+    plot = plotted("fig_2b", study)
     apart = [dataclasses.replace(line, y=line.y + 0.1) if line.curve == ELEMENTS else line for line in plot.lines]
     assert float(re.search(r"within (\S+) of the lines", elements_beside(apart))[1]) > 0.05
 
@@ -553,7 +553,7 @@ def test_remarks_on_tables_turn_with_their_entries(study):
     quick = dataclasses.replace(study, relaxations=tuple(dataclasses.replace(a, sweeps=7) for a in study.relaxations))
     assert "Greenwood's, relaxation 1.5: 3 of 3 converged, in 7 to 7 sweeps." in see(quick, "relaxation")
     assert "agree within both errors at 2 of 2" in see(study, "pull_off")
-    assert "agree within both errors at 0 of 2" in see(with_elements(study, 2.0), "pull_off")
+    assert "agree within both errors at 0 of 2" in see(with_pull_offs(study, 2.0), "pull_off")
 
 
 def with_table_1(study, factor):
@@ -562,19 +562,17 @@ def with_table_1(study, factor):
     return dataclasses.replace(study, table_1=entries)
 
 
-def with_elements(study, factor):
-    """A study in which the pull-off loads by finite elements are multiplied."""
-    wrong = [p.finite_element and p.finite_element * factor for p in study.pull_offs]
-    pairs = zip(study.pull_offs, wrong, strict=True)
-    return dataclasses.replace(study, pull_offs=[dataclasses.replace(p, finite_element=load) for p, load in pairs])
+def with_pull_offs(study, factor):
+    """A study in which the pull-off loads on the half-space are multiplied."""
+    return dataclasses.replace(study, pull_offs={mu: load * factor for mu, load in study.pull_offs.items()})
 
 
 def test_what_was_not_found_is_a_trouble_and_the_page_is_made(study, judged, tmp_path, monkeypatch):
     monkeypatch.setattr(claims, "judged", lambda _: judged)
     empty = '<svg xmlns="http://www.w3.org/2000/svg"/>'
     monkeypatch.setattr(Figure, "savefig", lambda _, file, **__: file.write_text(empty))  # drawn, but not rendered
-    nothing = {name: {} for name in ("jumps", "elements", "rises", "jumps_on")} | dict.fromkeys(
-        ("profiles", "more_profiles", "pull_offs", "ripples", "relaxations", "cycles", "criteria"), ()
+    nothing = {name: {} for name in ("jumps", "elements", "rises", "jumps_on", "pull_offs")} | dict.fromkeys(
+        ("profiles", "more_profiles", "ripples", "relaxations", "cycles", "criteria"), ()
     )
     bare = dataclasses.replace(study, **nothing, border=np.empty((0, 2)))
     greenwood_page.write(bare, tmp_path)
@@ -583,7 +581,7 @@ def test_what_was_not_found_is_a_trouble_and_the_page_is_made(study, judged, tmp
 
 
 def test_what_is_off_is_told_first_with_exit_code_1(study, judged, monkeypatch, tmp_path, capsys):
-    wrong = with_elements(with_table_1(study, 1.179), 2.0)
+    wrong = with_pull_offs(with_table_1(study, 1.179), 2.0)
     monkeypatch.setattr(greenwood, "compute", lambda **_: wrong)
     monkeypatch.setattr(greenwood_page, "FIGURES", {})  # not drawn again
     monkeypatch.setattr(claims, "judged", lambda _: judged)
