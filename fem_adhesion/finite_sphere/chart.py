@@ -12,14 +12,13 @@ nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import plus_minus
@@ -30,61 +29,29 @@ from fem_adhesion.finite_sphere.study import Study
 from fem_adhesion.finite_sphere.table import DRAWN, SHOWN, DeviationRow, borders, samples
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.scaling import Units, contact_modulus, spacing_of
-from halfspace.values import Array, Estimate, Valued
+from halfspace.values import Array, Estimate
 
 # The plane
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Field(Valued):
-    """A deviation over the plane of Tabor parameter and R/eps, (m,) and (n,), both ascending.
-
-    Deviation and error (m, n) are those of the sphere from the half-space, relative to it, and its bound; nan where
-    there is none. The ending (m, n) says how each contact on the sphere ended: ``solved``, ``absent`` if it does not
-    have the quantity, ``died``, the kind of error that refused it, ``left out``, or empty where none was asked for.
-    """
-
-    tabor: Array
-    radius_ratio: Array
-    deviation: Array
-    error: Array
-    ending: NDArray[np.str_]
-
-    @property
-    def largest(self) -> Array:
-        """Largest size, (m, n), that the deviation can have; nan where there is none."""
-        return np.asarray(np.abs(self.deviation) + self.error)
-
-    def at(self, tabor: float) -> Field:
-        """The part at one Tabor parameter."""
-        one = self.tabor == tabor
-        return Field(self.tabor[one], self.radius_ratio, self.deviation[one], self.error[one], self.ending[one])
+def in_plane(rows: Iterable[DeviationRow], quantity: str, poisson: float | None) -> list[DeviationRow]:
+    """Whole deviations of a quantity at a Poisson's ratio, over the plane of Tabor parameter and R/eps."""
+    return [r for r in rows if (r.cause, r.quantity, r.poisson) == ("all", quantity, poisson) and r.radius_ratio]
 
 
-def field_of(rows: Sequence[DeviationRow], quantity: str, poisson: float | None) -> Field:
-    """Whole deviation of a quantity at a Poisson's ratio, from the table."""
-    chosen = [r for r in rows if (r.cause, r.quantity, r.poisson) == ("all", quantity, poisson) and r.radius_ratio]
-    tabor = np.unique([row.tabor for row in chosen])
-    ratio = np.unique([float(row.radius_ratio or 0) for row in chosen])
-    deviation, error = np.full((2, tabor.size, ratio.size), np.nan)
-    ending = np.full(deviation.shape, "", dtype="<U40")
-    for row in chosen:
-        at = np.searchsorted(tabor, row.tabor), np.searchsorted(ratio, float(row.radius_ratio or 0))
-        ending[at] = row.kind if row.status == "refused" else row.status
-        if row.deviation and np.isfinite([row.deviation.value, row.deviation.error]).all():
-            deviation[at], error[at] = row.deviation.value, row.deviation.error
-    return Field(tabor, ratio, deviation, error, ending)
+def contour(plane: Sequence[DeviationRow], level: float) -> tuple[Array, Array]:
+    """Tabor parameters (m,), and R/eps at which a deviation has a level; nan if no neighbours have it between."""
+    tabors = sorted({row.tabor for row in plane})
+    ratios = [_last_crossing([row for row in plane if row.tabor == mu], level) for mu in tabors]
+    return np.array(tabors), np.array(ratios)
 
 
-def contour(field: Field, level: float) -> Array:
-    """R/eps at which a deviation has a level, (m,); nan where no two neighbours of the points have it between them."""
-    return np.array([_last_crossing(field.radius_ratio, deviation, level) for deviation in field.deviation])
-
-
-def _last_crossing(ratio: Array, deviation: Array, level: float) -> float:
-    known = np.isfinite(deviation)
-    x, y = np.log(ratio[known]), deviation[known]
-    size = np.abs(y)
+def _last_crossing(plane: Sequence[DeviationRow], level: float) -> float:
+    known = sorted(
+        (row.radius_ratio, row.deviation.value) for row in plane if row.radius_ratio and row.deviation if row.known
+    )
+    ratio, y = np.reshape(known, (-1, 2)).T
+    x, size = np.log(ratio), np.abs(y)
     crossed = np.flatnonzero((size[:-1] >= level) & (size[1:] < level))
     if not crossed.size or size[-1] >= level:
         return np.nan
@@ -93,16 +60,15 @@ def _last_crossing(ratio: Array, deviation: Array, level: float) -> float:
     return float(np.exp(x[i] + (x[i + 1] - x[i]) * (goal - a) / (b - a)))
 
 
-def safe_from(field: Field, level: float) -> float:
+def safe_from(plane: Sequence[DeviationRow], level: float) -> float:
     """Least R/eps of the points from which on all deviations are known to be below a level; nan if the last are not.
 
     Tabor parameters without any deviation, as those without jumps, do not count.
     """
-    known = np.isfinite(field.deviation)
-    size = np.where(known, field.largest, np.inf)[known.any(axis=1)].max(axis=0, initial=0.0)
-    above = np.flatnonzero(size >= level)
-    first = above[-1] + 1 if above.size else 0
-    return float(field.radius_ratio[first]) if known.any() and first < field.radius_ratio.size else np.nan
+    known = {row.tabor for row in plane if row.known}
+    counted = {(row.radius_ratio or 0.0, row.within(level)) for row in plane if row.tabor in known}
+    above = max((ratio for ratio, safe in counted if not safe), default=0.0)
+    return min((ratio for ratio, _ in counted if ratio > above), default=math.nan)
 
 
 def materials() -> Iterator[tuple[str, Units]]:
@@ -133,7 +99,7 @@ UNSOLVED: Mapping[str, tuple[str, str]] = {  # by how a contact ended: marker, a
     "left out": ("_", rf"not tried: $R < {SMALLEST_SPHERE**0.5:g}\,\beta$"),
     "died": ("X", "not solved: its process died"),
 }
-ENDED = {"solved", "absent", ""}  # endings that are not marked
+ENDED = {"solved", "absent"}  # endings that are not marked
 MARKERS: Mapping[str, tuple[str, str]] = {
     "silica": ("o", style.BLUE),
     "gold": ("s", style.ORANGE),
@@ -153,10 +119,9 @@ def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence
     for axes, quantity in zip(panels, DRAWN, strict=True):
         title = f"half-space's error of the {SHOWN[quantity]}"
         axes.set(xscale="log", yscale="log", xlim=(LEFT, RIGHT), ylim=(BOTTOM, TOP), title=title)
-        field = field_of(rows, quantity, poisson)
-        if field.tabor.size:
-            _contours(axes, field)
-            _points(axes, field)
+        plane = in_plane(rows, quantity, poisson)
+        _contours(axes, plane)
+        _points(axes, plane)
         _materials(axes)
         style.plain_ticks(axes.xaxis, (0.1, 0.3, 1, 3, 10))
         axes.set(xlabel=r"Tabor parameter $\mu$", ylabel=r"radius over spacing $R/\epsilon$", axisbelow=True)
@@ -168,30 +133,30 @@ def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence
     return figure
 
 
-def _contours(axes: Any, field: Field) -> None:
+def _contours(axes: Any, plane: Sequence[DeviationRow]) -> None:
     """Contours, each with its error beside its right end."""
     for level, (colour, dashes, width, shade) in LINES.items():
-        ratio = contour(field, level)
+        tabor, ratio = contour(plane, level)
         known = np.flatnonzero(np.isfinite(ratio))
         if not known.size:
             continue
-        axes.fill_between(field.tabor, BOTTOM, ratio, color=shade, linewidth=0, zorder=level - 1)
+        axes.fill_between(tabor, BOTTOM, ratio, color=shade, linewidth=0, zorder=level - 1)
         look = {"color": colour, "linestyle": dashes, "linewidth": width, "marker": "_", "markersize": 7}  # if alone
-        axes.plot(field.tabor, ratio, **look, label=f"{100 * level:g} %")
-        at = float(field.tabor[known[-1]]), float(ratio[known[-1]])
+        axes.plot(tabor, ratio, **look, label=f"{100 * level:g} %")
+        at = float(tabor[known[-1]]), float(ratio[known[-1]])
         style.note(axes, f"{100 * level:g} %", at, (5, -3), color=colour, fontweight="bold", bbox=WHITE)
 
 
-def _points(axes: Any, field: Field) -> None:
+def _points(axes: Any, plane: Sequence[DeviationRow]) -> None:
     """Dots where the deviation was solved for, and a marker at every point that was not, by how it ended."""
-    mu, rho = np.meshgrid(field.tabor, field.radius_ratio, indexing="ij")
-    marked = {"solved": (np.isfinite(field.deviation), ".", 4)}
-    for ending in sorted(set(field.ending.flat) - ENDED):
+    marked = {"solved": (".", 4, [row for row in plane if row.known])}
+    for ending in sorted({row.ending for row in plane} - ENDED):
         marker, label = UNSOLVED.get(ending, ("*", f"not solved: {ending}"))
-        marked[label] = field.ending == ending, marker, 7
-    for label, (at, marker, size) in marked.items():
-        if at.any():
-            axes.plot(mu[at], rho[at], marker, color="0.4", markersize=size, zorder=1.8, label=label)
+        marked[label] = marker, 7, [row for row in plane if row.ending == ending]
+    for label, (marker, size, points) in marked.items():
+        if points:
+            at = [row.tabor for row in points], [row.radius_ratio for row in points]
+            axes.plot(*at, marker, color="0.4", markersize=size, zorder=1.8, label=label)
 
 
 def _begun(borders: Sequence[Record], poisson: float | None) -> list[tuple[float, Estimate]]:
@@ -237,8 +202,8 @@ def _materials(axes: Any) -> None:
 
 def _caption(study: Study) -> Iterator[str]:
     """What is to be seen; of where the jumps begin, the smallest sphere, the largest, and the half-space."""
-    fields = [field_of(study.rows, quantity, study.poisson) for quantity in DRAWN]
-    crossed = any(np.isfinite(contour(field, level)).any() for field in fields for level in LINES)
+    planes = [in_plane(study.rows, quantity, study.poisson) for quantity in DRAWN]
+    crossed = any(np.isfinite(contour(plane, level)[1]).any() for plane in planes for level in LINES)
     levels = ", ".join(f"{100 * level:g}" for level in LINES)
     yield said("finite_sphere", "chart", "lines" if crossed else "no_lines", levels=levels)
     begun = {ratio: plus_minus(tabor) for ratio, tabor in _begun(borders(study.records), study.poisson)}
@@ -247,7 +212,7 @@ def _caption(study: Study) -> Iterator[str]:
     shown += [f"{tabor} on the half-space" for ratio, tabor in begun.items() if np.isinf(ratio)]
     if shown:
         yield f"Jumps under fixed grips begin at mu = {', '.join(shown)}."
-    if any(set(field.ending.flat) - ENDED for field in fields):
+    if any(row.ending not in ENDED for plane in planes for row in plane):
         yield said("finite_sphere", "chart", "unsolved")
     yield said("finite_sphere", "chart", "materials")
 

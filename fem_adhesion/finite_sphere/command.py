@@ -30,15 +30,15 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.finite_sphere import page
     from fem_adhesion.finite_sphere import study as finite_sphere
 
-    plan = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
+    cases, left_out = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
     place = options.resume or options.out
     if place.resolve() != options.out.resolve():
         require_room(options.out, force=options.force)
     store = open_store(place, finite_sphere.code(), resume=bool(options.resume), force=options.force)
     settings = {"jobs": options.jobs, "dask": options.dask, "fresh": bool(options.force and not options.resume)}
     with progress_bar() as step:
-        solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
-    study = finite_sphere.Study((*solved, *plan.left_out), options.quick)
+        solved = finite_sphere.run(cases, store, progress=step, **settings)
+    study = finite_sphere.Study((*solved, *left_out), options.quick)
     with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
         note = page.write(study, aside, in_turn(step, len(page.PARTS)))
         page.remove_outdated(options.out, aside)

@@ -34,17 +34,12 @@ Term = Callable[[Array, Array], Array]
 """Of Tabor parameters and R/eps."""
 
 
-def _power(exponent: float) -> Term:
-    """(beta/R) to a power."""
-    return lambda mu, rho: np.asarray((mu / rho) ** (exponent / 2))
-
-
 ALL: Mapping[str, Term] = {
-    "beta/R": _power(1),
-    "(beta/R)^2": _power(2),
-    "(beta/R)^3": _power(3),
-    "(beta/R)^4": _power(4),
-    "(beta/R)^5": _power(5),
+    "beta/R": lambda mu, rho: (mu / rho) ** 0.5,
+    "(beta/R)^2": lambda mu, rho: mu / rho,
+    "(beta/R)^3": lambda mu, rho: (mu / rho) ** 1.5,
+    "(beta/R)^4": lambda mu, rho: (mu / rho) ** 2,
+    "(beta/R)^5": lambda mu, rho: (mu / rho) ** 2.5,
     "eps/R": lambda mu, rho: 1 / rho,  # noqa: ARG005 - every term is a function of both
     "(eps/R)^2": lambda mu, rho: 1 / rho**2,  # noqa: ARG005
     "beta/R ln(beta/R)": lambda mu, rho: np.sqrt(mu / rho) * np.log(mu / rho) / 2,
@@ -133,24 +128,18 @@ def fit(data: Samples, terms: Mapping[str, Term], *, tolerance: float = TOLERANC
             break
         found, residual, allowed = _least_squares(part, functions, tolerance)
         if np.all(np.abs(residual) <= allowed):
-            found = _with_bias(found, part.where(part.stretch <= limit / 2), functions, tolerance)
+            nearer = part.where(part.stretch <= limit / 2)
+            if nearer.tabor.size >= 2 * len(terms):  # what the terms leave out pulls at them, which no scatter shows
+                others, _, _ = _least_squares(nearer, functions, tolerance)
+                found = [
+                    Estimate(c.value, c.error + abs(c.value - d.value)) for c, d in zip(found, others, strict=True)
+                ]
             coefficients = dict(zip(terms, found, strict=True))
             return Fit(coefficients, float(limit), part.tabor.size, float(np.abs(residual).max()))
     raise InputError(
         f"{data.tabor.size} points leave no {2 * len(terms)} or more within tolerance = {tolerance:g} of a fit; "
         "give more points of small tabor/radius_ratio"
     )
-
-
-def _with_bias(found: Sequence[Estimate], nearer: Samples, terms: Sequence[Term], tolerance: float) -> list[Estimate]:
-    """Coefficients whose errors include their changes when only the points nearer to the limit are fitted.
-
-    What the terms leave out pulls at them, which no scatter shows.
-    """
-    if nearer.tabor.size < 2 * len(terms):
-        return list(found)
-    others, _, _ = _least_squares(nearer, terms, tolerance)
-    return [Estimate(c.value, c.error + abs(c.value - d.value)) for c, d in zip(found, others, strict=True)]
 
 
 def _least_squares(data: Samples, terms: Sequence[Term], tolerance: float) -> tuple[list[Estimate], Array, Array]:

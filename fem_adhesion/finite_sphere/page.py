@@ -14,11 +14,11 @@ from fem_adhesion.common.page import Columns, Section, Table, bullets, said, tit
 from fem_adhesion.common.style import captions, draw, shown
 from fem_adhesion.finite_sphere.bulk import Bulk, coefficients
 from fem_adhesion.finite_sphere.cases import CRITICAL, Record
-from fem_adhesion.finite_sphere.chart import CHART, LINES, Field, field_of, safe_from
+from fem_adhesion.finite_sphere.chart import CHART, LINES, in_plane, safe_from
 from fem_adhesion.finite_sphere.figures import FIGURES
 from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, compare, findings
 from fem_adhesion.finite_sphere.study import Study
-from fem_adhesion.finite_sphere.table import CAUSES, SHOWN, borders, write_tables
+from fem_adhesion.finite_sphere.table import CAUSES, SHOWN, DeviationRow, borders, write_tables
 from halfspace.errors import Unsolved, tried
 
 
@@ -29,16 +29,19 @@ def all_tables(study: Study) -> list[Table]:
 
 def _safe(study: Study) -> Table:
     """Least R/eps of the points solved from which on a deviation is below a level, at each Tabor parameter."""
-    fields = {name: field_of(study.rows, name, study.poisson) for name in SHOWN}
-    tabors = sorted({tabor for field in fields.values() for tabor in field.tabor})
+    planes = {name: in_plane(study.rows, name, study.poisson) for name in SHOWN}
+    tabors = sorted({row.tabor for plane in planes.values() for row in plane})
 
-    def cell(field: Field, level: float) -> str:
-        least = safe_from(field, level)
-        return f"{least:g}" if np.isfinite(least) else "none" if np.isfinite(field.deviation).any() else ""
+    def cell(plane: Sequence[DeviationRow], level: float) -> str:
+        least = safe_from(plane, level)
+        return f"{least:g}" if np.isfinite(least) else "none" if any(row.known for row in plane) else ""
 
     lines = [
-        (SHOWN[name], f"{100 * level:g} %", *(cell(field.at(tabor), level) for tabor in tabors))
-        for name, field in fields.items()
+        (
+            *(SHOWN[name], f"{100 * level:g} %"),
+            *(cell([row for row in plane if row.tabor == tabor], level) for tabor in tabors),
+        )
+        for name, plane in planes.items()
         for level in LINES
     ]
     columns = ("quantity", "half-space errs less than", *(f"R/eps at mu = {tabor:g}" for tabor in tabors))
@@ -159,12 +162,13 @@ def _answer(study: Study, level: float = 0.01) -> Iterator[str]:
         return
     answers = []
     for quantity, name in SHOWN.items():
-        field = field_of(study.rows, quantity, study.poisson)
-        known, least = field.tabor[np.isfinite(field.deviation).any(axis=1)], safe_from(field, level)
-        if not known.size:
+        plane = in_plane(study.rows, quantity, study.poisson)
+        known, least = sorted({row.tabor for row in plane if row.known}), safe_from(plane, level)
+        if not known:
             where = "nowhere that is known: the study has no point of it"
         elif np.isnan(least):
-            where = f"at no R/eps up to {field.radius_ratio[-1]:g} for all mu from {known[0]:g} to {known[-1]:g}"
+            largest = max(row.radius_ratio or 0.0 for row in plane)
+            where = f"at no R/eps up to {largest:g} for all mu from {known[0]:g} to {known[-1]:g}"
         else:
             where = f"if R/eps is {least:g} or more (points solved, mu from {known[0]:g} to {known[-1]:g})"
         answers.append(Markup("the <strong>{}</strong> {};").format(name, where))

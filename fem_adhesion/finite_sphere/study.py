@@ -84,23 +84,16 @@ QUICK: Sequence[Combinations] = (  # 20 s
 )
 
 
-@dataclass(frozen=True)
-class Plan:
-    """Cases of the study, each once: those to compute, and those beyond the limits of the solvers, with reasons."""
-
-    cases: tuple[SphereCase, ...]
-    left_out: tuple[Record, ...]
-
-
 def plan(
     tabors: Sequence[float] | None = None,
     radius_ratios: Sequence[float] | None = None,
     poissons: Sequence[float] | None = None,
     *,
     quick: bool = False,
-) -> Plan:
-    """Plan of the study: all combinations of the inputs but for spheres too small for their Tabor parameter.
+) -> tuple[tuple[SphereCase, ...], tuple[Record, ...]]:
+    """Cases of the study, each once: those to compute, and those beyond the limits of the solvers, with reasons.
 
+    They are all combinations of the inputs; a sphere may be too small for its Tabor parameter.
     Poisson's ratio is 0.3 unless given. If none of the three inputs is given, it is varied besides, at some points. A
     quick study has two by three points unless given, and a lower accuracy. InputError if an input is out of range, or
     a sphere is too small for every Tabor parameter.
@@ -119,7 +112,7 @@ def plan(
     points = (point for mu, rho, nu, models in grids for point in product(mu, rho, nu, models))
     cases = tuple(dict.fromkeys(case_of(model, mu, rho, nu, rtol) for mu, rho, nu, model in points))
     left_out = {case: record for case in cases if (record := _left_out(case))}
-    return Plan(tuple(case for case in cases if case not in left_out), tuple(left_out.values()))
+    return tuple(case for case in cases if case not in left_out), tuple(left_out.values())
 
 
 def _left_out(case: SphereCase) -> Record | None:

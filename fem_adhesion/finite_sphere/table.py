@@ -88,6 +88,22 @@ class DeviationRow:
     seconds: float
     kind: str = ""
 
+    @property
+    def known(self) -> bool:
+        """Whether there is a deviation, and its error."""
+        number = self.deviation
+        return number is not None and math.isfinite(number.value) and math.isfinite(number.error)
+
+    @property
+    def ending(self) -> str:
+        """How the contact ended: the status, or the kind of error that refused it."""
+        return self.kind if self.status == "refused" else self.status
+
+    def within(self, level: float) -> bool:
+        """Whether the deviation is known to be smaller than a level."""
+        number = self.deviation
+        return number is not None and abs(number.value) + number.error < level
+
 
 def rows(records: Sequence[Record], bulk: BulkCompliance = bulk_compliance) -> tuple[DeviationRow, ...]:
     """Lines of the table, of records in any order; approaches of jumps also less the body's yield."""
@@ -212,11 +228,10 @@ def samples(rows: Iterable[DeviationRow], cause: str, quantity: str, **at: float
     chosen = [
         (row.tabor, row.radius_ratio, row.poisson, row.deviation.value, row.deviation.error)
         for row in rows
-        if (row.cause, row.quantity) == (cause, quantity) and row.deviation and row.radius_ratio
+        if (row.cause, row.quantity) == (cause, quantity) and row.deviation and row.known and row.radius_ratio
         if all(getattr(row, name) == value for name, value in at.items())
     ]
-    numbers = np.array(chosen, float).reshape(-1, len(fields(Samples)))
-    return Samples(*numbers[np.isfinite(numbers[:, -2:]).all(axis=1)].T)
+    return Samples(*np.array(chosen, float).reshape(-1, len(fields(Samples))).T)
 
 
 def reference_poisson(rows: Sequence[DeviationRow]) -> float | None:

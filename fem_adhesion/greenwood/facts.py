@@ -39,7 +39,7 @@ class Settings(Valued):
     loads: Mapping[float, float] = field(default_factory=lambda: {0.02: 50.0})  # load where a curve ends, if not 5
     rtol: float = 1e-7  # relative accuracy of the events of curves; their points carry their own errors
     # Figures
-    points: int = 300  # points of a drawn curve; a polygon through 150 shows corners
+    points: int = 600  # points of a drawn curve, most of them far apart; a polygon through 300 shows corners
     specified: Mapping[float, Array] = field(  # central gaps prescribed, eps: Fig. 3
         default_factory=lambda: {1.0: FEW, 2.0: FEW, 3.0: FEW, 5.0: np.linspace(1.4, 0.05, 120)}
     )

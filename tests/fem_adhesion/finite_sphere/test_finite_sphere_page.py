@@ -14,10 +14,10 @@ from fem_adhesion.finite_sphere import chart as chart_module
 from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.bulk import bulk_compliance, excess_compliance
 from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CRITICAL, MODELS, Record, case_of
-from fem_adhesion.finite_sphere.chart import Field, contour, field_of, safe_from
+from fem_adhesion.finite_sphere.chart import contour, in_plane, safe_from
 from fem_adhesion.finite_sphere.page import SHOWN
 from fem_adhesion.finite_sphere.study import Study, plan
-from fem_adhesion.finite_sphere.table import CAUSES, borders, rows, write_tables
+from fem_adhesion.finite_sphere.table import CAUSES, DeviationRow, borders, rows, write_tables
 from halfspace.elastic import grid
 from halfspace.values import Estimate
 
@@ -52,7 +52,7 @@ def made(case):
 
 @pytest.fixture(scope="module")
 def records():
-    return [made(case) for case in plan(TABORS, RATIOS, [0.0, 0.3, 0.45]).cases]
+    return [made(case) for case in plan(TABORS, RATIOS, [0.0, 0.3, 0.45])[0]]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -68,10 +68,16 @@ def table(records):
     return rows(records)
 
 
-def field(deviation, error=0.0, tabors=TABORS, ratios=RATIOS):
-    deviation = np.asarray(deviation, float)
-    ending = np.where(np.isfinite(deviation), "solved", "absent")
-    return Field(np.array(tabors), np.array(ratios), deviation, np.full_like(deviation, error), ending)
+def plane(deviations, error=0.0):
+    """Rows of deviations at each of TABORS and RATIOS; absent where they are nan."""
+    blank = ("all", "pull_off_load", "R dgamma", None, None, None)
+    return [
+        DeviationRow(mu, rho, 0.3, *blank, Estimate(value, error), "solved", "", 1.0)
+        if np.isfinite(value)
+        else DeviationRow(mu, rho, 0.3, *blank, None, "absent", "why", 1.0)
+        for mu, line in zip(TABORS, np.asarray(deviations, float), strict=True)
+        for rho, value in zip(RATIOS, line.tolist(), strict=True)
+    ]
 
 
 # --- the page ---
@@ -116,28 +122,28 @@ def test_the_table_tells_from_where_on_a_deviation_is_small(written):
 
 def test_a_contour_of_a_power_law_is_where_it_has_its_value():
     mu, rho = np.array(TABORS)[:, None], np.array(RATIOS)
-    found = field(0.7 * mu / rho**0.5 * [[-1], [1], [-1]])
-    np.testing.assert_allclose(contour(found, 0.05), (0.7 * np.array(TABORS) / 0.05) ** 2, rtol=1e-12)
+    found = plane(0.7 * mu / rho**0.5 * [[-1], [1], [-1]])
+    np.testing.assert_allclose(contour(found, 0.05)[1], (0.7 * np.array(TABORS) / 0.05) ** 2, rtol=1e-12)
 
 
 def test_a_contour_is_the_last_crossing():
-    found = field([[-0.3, 0.001, -0.3, -0.003], [0.3, 0.1, 0.07, -0.03], [0.3, 0.1, np.nan, 0.02]])
-    assert contour(found, 0.03)[0] == pytest.approx(1e3 * 10**0.5)  # half-way from 0.3 to 0.003, as logarithms
-    assert contour(found, 0.04)[1] == pytest.approx(10**3.3)  # 0.3 of the way from 0.07 to -0.03
-    assert contour(found, 0.05)[2] == pytest.approx(100 * 100 ** (log(2) / log(5)))  # over the gap
-    assert np.isnan(contour(found, 0.01)[1])
+    found = plane([[-0.3, 0.001, -0.3, -0.003], [0.3, 0.1, 0.07, -0.03], [0.3, 0.1, np.nan, 0.02]])
+    assert contour(found, 0.03)[1][0] == pytest.approx(1e3 * 10**0.5)  # half-way from 0.3 to 0.003, as logarithms
+    assert contour(found, 0.04)[1][1] == pytest.approx(10**3.3)  # 0.3 of the way from 0.07 to -0.03
+    assert contour(found, 0.05)[1][2] == pytest.approx(100 * 100 ** (log(2) / log(5)))  # over the gap
+    assert np.isnan(contour(found, 0.01)[1][1])
 
 
 def test_the_least_safe_ratio_is_after_the_last_point_above():
-    found = field([[-0.3, 0.001, -0.002, -0.003], [0.3, 0.1, np.nan, -0.003], [np.nan] * 4])
+    found = plane([[-0.3, 0.001, -0.002, -0.003], [0.3, 0.1, np.nan, -0.003], [np.nan] * 4])
     assert safe_from(found, 0.01) == 1e4  # what is not known at 1e3 is not known to be safe
     assert safe_from(found, 0.5) == 1e4
     assert np.isnan(safe_from(found, 0.003))
-    known = field([[-0.3, 0.001, -0.002, -0.003], [0.3, 0.1, 0.001, -0.003], [np.nan] * 4])
+    known = plane([[-0.3, 0.001, -0.002, -0.003], [0.3, 0.1, 0.001, -0.003], [np.nan] * 4])
     assert safe_from(known, 0.01) == 1e3
     assert safe_from(known, 0.5) == 10.0
-    assert np.isnan(safe_from(field([[0.009] * 4] * 3, error=0.002), 0.01)), "within its error it may be above"
-    assert np.isnan(safe_from(field([[np.nan] * 4] * 3), 0.01))
+    assert np.isnan(safe_from(plane([[0.009] * 4] * 3, error=0.002), 0.01)), "within its error it may be above"
+    assert np.isnan(safe_from(plane([[np.nan] * 4] * 3), 0.01))
 
 
 def test_the_drawn_contour_is_that_of_the_deviations(table):
@@ -213,7 +219,7 @@ def values_of(case):
 @pytest.fixture(scope="module")
 def distinct():
     """Results whose values are all distinct."""
-    cases = [case for case in plan(TABORS, RATIOS, [0.0, 0.3]).cases if not case.model.startswith("first_jump")]
+    cases = [case for case in plan(TABORS, RATIOS, [0.0, 0.3])[0] if not case.model.startswith("first_jump")]
     return Study([Record(case, "solved", values_of(case), "", 1.0) for case in cases])
 
 
@@ -346,7 +352,7 @@ def study_of(law, tabors=TABORS, ratios=RATIOS, poissons=(0.0, 0.3)):
         values = {name: Estimate(-4.0 * (1 + deviation), 1e-9) for name in names}
         return Record(case, "solved", values | {APPROACH_SCALE: Estimate(4.0, 0.0)}, "", 1.0)
 
-    cases = plan(tabors, ratios, poissons).cases
+    cases = plan(tabors, ratios, poissons)[0]
     return Study([solved(case) for case in cases])
 
 
@@ -421,6 +427,7 @@ def test_a_deviation_whose_error_is_not_known_is_not_known(table):
     """Were it kept, no comparison with a level would find it unsafe."""
     chosen = [row for row in table if (row.cause, row.quantity, row.poisson) == ("all", "pull_off_load", 0.3)]
     unknown = [replace(row, deviation=Estimate(1e-9, math.nan)) for row in chosen if row.deviation]
-    found = field_of(unknown, "pull_off_load", 0.3)
-    assert np.isnan(found.deviation).all()
+    found = in_plane(unknown, "pull_off_load", 0.3)
+    assert len(found) == len(unknown)
+    assert not any(row.known for row in found)
     assert np.isnan(safe_from(found, 0.01))
