@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator
 
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import counted, span
@@ -67,11 +67,11 @@ def finish(figure: Figure, panels: Sequence[Any], columns: int = 3) -> None:
     style.legend_below(figure, panels, columns)
 
 
-def _plain(axis: Any, write: Callable[[float], str] = "{:g}".format) -> None:
+def _plain(axis: Any, write: str | Callable[[float, int], str] = "{x:g}") -> None:
     """Plain numbers at 1, 2 and 5 of each decade of a logarithmic axis, and none between."""
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.set_major_formatter(FuncFormatter(lambda x, _: write(x)))
-    axis.set_minor_formatter(NullFormatter())
+    axis.set_major_formatter(write)
+    axis.set_minor_formatter("")
 
 
 def _cause(axes: Any, rows: Sequence[DeviationRow], cause: str, tabor: float, poisson: float | None) -> None:
@@ -165,7 +165,7 @@ def _figure_poisson(study: Study) -> Figure:
                 axes.plot(nu, np.abs(y), label=rf"$\mu = {tabor:g}$, $R/\epsilon = {ratio:g}$", **look)
                 axes.plot(nu[y > 0], np.abs(y[y > 0]), **look | {"linestyle": "none", "markerfacecolor": "white"})
         axes.set(title=SHOWN[quantity], yscale="log")
-        _plain(axes.yaxis, lambda y: f"{100 * y:g} %")
+        _plain(axes.yaxis, lambda y, _: f"{100 * y:g} %")
         style.dress(axes, r"Poisson's ratio $\nu$", SIZE, legend=None)
     style.legend_below(figure, panels, columns=3)
     return figure

@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 import importlib
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from fem_adhesion.bodies.body import GripName
 from fem_adhesion.common.page import data_rows
 from fem_adhesion.finite_sphere.bulk import bulk_compliance
-from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, MODELS, QUANTITIES, Record, SphereCase, case_of
+from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, MODELS, QUANTITIES, Record, case_of
 from halfspace.values import Array, Estimate, Valued
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]
@@ -107,10 +107,7 @@ class DeviationRow:
 
 def rows(records: Sequence[Record], bulk: BulkCompliance = bulk_compliance) -> tuple[DeviationRow, ...]:
     """Lines of the table, of records in any order; approaches of jumps also less the body's yield."""
-    return tuple(_rows({record.case: record for record in records}, bulk))
-
-
-def _rows(found: Mapping[SphereCase, Record], bulk: BulkCompliance) -> Iterator[DeviationRow]:
+    found, lines = {record.case: record for record in records}, []
     causes = [(record, name) for record in found.values() for name in CAUSES if CAUSES[name].model == record.case.model]
     for record, cause in causes:
         case = record.case
@@ -123,7 +120,8 @@ def _rows(found: Mapping[SphereCase, Record], bulk: BulkCompliance) -> Iterator[
             deviation = (value - baseline) / scale if value and baseline and scale else None
             head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, unit)
             ending = (*_ending(record, others, three), record.seconds, record.kind)
-            yield DeviationRow(*head, value, baseline, half_space, deviation, *ending)
+            lines.append(DeviationRow(*head, value, baseline, half_space, deviation, *ending))
+    return tuple(lines)
 
 
 def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
