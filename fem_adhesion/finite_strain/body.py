@@ -116,18 +116,16 @@ def stress(state: Deformation, shear: float, pressure: Array | float) -> Array:
     return np.asarray(shear * (A + turned) + pressure * f)
 
 
-def geometric_moduli(state: Deformation) -> Array:
-    """f_iL f_kJ, f = F^-T: minus the derivative of F^-T by F, (5, 5, ...)."""
-    f = state.inverse_transpose
-    moduli = np.zeros((5, *f.shape))
-    moduli[0, 0] = f[0] ** 2
-    moduli[1:, 1:] = np.einsum("im...,kj...->ijkm...", in_plane(f), in_plane(f)).reshape(4, 4, *f.shape[1:])
-    return moduli
-
-
 def moduli(state: Deformation, shear: float, pressure: Array | float) -> Array:
-    """Derivative of the stress by A at a fixed pressure, (5, 5, ...), in E*: symmetric."""
-    result = (shear - state.stretch * np.asarray(pressure)) * geometric_moduli(state)
+    """Derivative of the stress by A at a fixed pressure, (5, 5, ...), in E*: symmetric.
+
+    Minus the derivative of F^-T by F is f_iL f_kJ, f = F^-T.
+    """
+    f = state.inverse_transpose
+    result = np.zeros((5, *f.shape))
+    result[0, 0] = f[0] ** 2
+    result[1:, 1:] = np.einsum("im...,kj...->ijkm...", in_plane(f), in_plane(f)).reshape(4, 4, *f.shape[1:])
+    result *= shear - state.stretch * np.asarray(pressure)
     for k in range(5):
         result[k, k] += shear
     return result

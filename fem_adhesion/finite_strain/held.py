@@ -10,9 +10,8 @@ whence all others are recovered: see `fem_adhesion.elasticity.elimination`. Thos
 
 Only the surface law is far from linear. The body's tangent changes by a part of the order of the change of strain, so
 that the factors made at one state serve others near it: what they leave of a solution is solved for by them again,
-until it is as accurate as asked for. Where that converges slowly the state gets factors of its own. On the way to the
-events of tabor 1 and R/eps 100 to 1e-6 that halved the factorisations, 58 to 28, one of which costs as much as twenty
-iterations.
+until it is as accurate as asked for. Where that converges slowly the state gets factors of its own. For the events of
+tabor 1 and R/eps 100 to 1e-6 that leaves 22 factorisations of 58; see `fem_adhesion.finite_strain.settings`.
 """
 
 from __future__ import annotations

@@ -144,10 +144,9 @@ class Traction(Valued):
         surface, mu, delta, c = self.surface, self.tabor, self.stretch, self.convention
         V = surface.vertical
         tangent = V.T @ ((-mu * slope * self.areas(s))[:, None] * V)
-        if delta and (c.deformed_area or c.surface_stress):
-            coupling = V.T @ ((self.columns * P)[:, None] * surface.area_rates(s, delta))
-            tangent += c.deformed_area * coupling + c.surface_stress * coupling.T
-            tangent += surface.area_curvature(delta, self._surface_stress / mu * Phi)
+        coupling = V.T @ ((self.columns * P)[:, None] * surface.area_rates(s, delta))
+        tangent += c.deformed_area * coupling + c.surface_stress * coupling.T
+        tangent += surface.area_curvature(delta, self._surface_stress / mu * Phi)
         return np.asarray(tangent)
 
     @property
