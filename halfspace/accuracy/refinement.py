@@ -83,6 +83,7 @@ def _climb_from(
     before = (*lowest.stages, *(() if below is lowest else below.stages[-1:]))
     jumps = [ascent.state[name] for name in FOLDS if name in ascent.state]
     further, lost = further_folds(segments if folds else (), jumps, before, higher)
+    lost += [] if folds else [found[name].point for name in FOLDS if name in found]
     chains = _in_order(ascent.chains, further)
     lowest_stage = below.stages[-1] if below.stages else Charted(tuple(charts))
     ladder = Ladder((lowest_stage, *higher.stages), higher.twin, higher.rule, higher.coarser)

@@ -30,7 +30,7 @@ from halfspace.equilibrium.path import (
     plane_across,
     solved_point,
 )
-from halfspace.errors import Unsolved, required
+from halfspace.errors import Unsolved, required, tried
 from halfspace.roots import sought
 from halfspace.values import Array, Valued
 
@@ -47,9 +47,8 @@ class ConditionSettings:
     long: float = 0.05  # arclength in which a rate that nearly vanishes at an end may do so twice
     solved: float = 3e-9  # relative size of the last step: after 1e-8 loads that should be zero were up to 3e-11
     nearby: float = 0.3  # arclength within which an event is looked for on another discretisation at once
-    trials: int = 4  # steps to beyond an event
-    past: float = 1.5  # how far past it they aim, in secants
-    longer: float = 3.0  # how many times the last a step may be
+    farthest: float = 1.0  # arclength to which the path is followed there to find it
+    past: float = 1.5  # how far past it the first step aims, in secants
     widths: tuple[float, ...] = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
 
 
@@ -309,25 +308,37 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
 
 def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located | Unsolved:
     """Solve for an event farther off: in the plane across the path first, then along it to beyond the event."""
-    condition, nearby = event.condition, same_place(event.point, problem, start, metric)
-    if not nearby:
-        return nearby
-    step = -LOCATE.past * condition.of(nearby) / event.slope
-    if abs(step) < LOCATE.shortest:
-        return Located(condition, problem, nearby, event.slope)
-    for _ in range(LOCATE.trials):
-        beyond = correct(problem, nearby, step, metric)
-        if not beyond:
-            return beyond
-        left = condition.of(beyond) / condition.of(nearby)
-        if left <= 0:
-            return between(problem, nearby, beyond, condition, metric)
-        step *= min(1 + LOCATE.past * left / (1 - left), LOCATE.longer) if left < 1 else LOCATE.longer
-    at = event.point.observables
-    return Unsolved(
-        f"the event at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma is not found again on another grid; "
-        "take a smaller rtol"
-    )
+    condition, here = event.condition, same_place(event.point, problem, start, metric)
+    if not here:
+        return here
+    ahead = -condition.of(here) / event.slope
+    if abs(ahead) < LOCATE.shortest:
+        return Located(condition, problem, here, event.slope)
+    way = here if ahead > 0 else _turned(here)
+
+    def beyond(point: Point) -> bool:
+        return _changes(way, point, condition) or point.arclength - way.arclength > LOCATE.farthest
+
+    steps = Steps(first=min(LOCATE.past * abs(ahead), LOCATE.nearby), longest=LOCATE.nearby)
+    points = tried(follow, problem, way, metric, beyond, steps=steps)
+    if isinstance(points, Unsolved):
+        return points
+    if not _changes(way, points[-1], condition):
+        at = event.point.observables
+        return Unsolved(
+            f"the event at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma is not found again on another grid; "
+            "take a smaller rtol"
+        )
+    found = between(problem, points[-2], points[-1], condition, metric)
+    if not found or metric.along(event.point, found.point) > 0:
+        return found
+    slope = found.slope if condition.stationary else -found.slope  # of a rate both it and the arclength change sign
+    return replace(found, point=_turned(found.point), slope=slope)
+
+
+def _turned(point: Point) -> Point:
+    """The same point of the path that goes the other way."""
+    return replace(point, tangent=-point.tangent, rates=-point.rates)
 
 
 def steepest_from(

@@ -63,7 +63,7 @@ class EquilibriumPath(WithEvents, Valued):
     on_twin : mapping of str to Located
         The events, and the two states of `energy`, on the ladder's twin.
     unconfirmed : tuple of Unconfirmed
-        Folds between the jumps that cannot be told: the curve as it was traced has them, but no finer grid.
+        Folds that cannot be told: the curve as it was traced has them, but no finer grid.
     """
 
     tabor: float
@@ -96,11 +96,15 @@ class EquilibriumPath(WithEvents, Valued):
 
     @property
     def jumps(self) -> bool | None:
-        """Whether fixed grips jump on and off; None if it cannot be told, as `margin` is within its error of zero."""
+        """Whether fixed grips jump on and off; None if it cannot be told.
+
+        As where `margin` is within its error of zero, or where the curve as it was traced has folds, far from merging,
+        that no finer grid has.
+        """
         found = "jump_on" in self.events
         if self.margin and (abs(self.margin.value) <= self.margin.error or found != (self.margin.value < 0)):
             return None
-        return found
+        return None if self.unconfirmed and not found and not self.margin else found
 
     @property
     def approach_scale(self) -> float:

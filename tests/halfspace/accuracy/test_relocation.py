@@ -7,9 +7,14 @@ import pytest
 
 import fem_adhesion
 from fem_adhesion import Block, Scene
+from halfspace.accuracy.grids import Resolution, half_space_charts
+from halfspace.accuracy.stages import Rung
 from halfspace.equilibrium import conditions, events
+from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import APPROACH
+from halfspace.equilibrium.search import find_events
+from halfspace.errors import NotConverged, Unsolved
 from halfspace.scales import Scales
 
 
@@ -22,6 +27,26 @@ def test_events_are_found_on_a_block_three_times_as_large(rtol):
             assert abs(event.condition.of(event.point)) < 1e-9, name
     small, large = (path.stages[k]["pull_off"].point.observables[1] for k in (0, -1))
     assert small / large < 0.9
+
+
+def test_a_fold_far_off_is_found_along_the_path():
+    """Steps of a secant failed here; on clamped blocks under a steep law so a curve was told not to jump."""
+    before, after = (half_space_charts(Scales(tabor), Resolution(7, 0.6, 3.0, 8.0)) for tabor in (1.2, 1.5))
+    fold, expected = (find_events(trace_charts(charts))["jump_off"] for charts in (before, after))
+    found = moved(fold, after[-1].problem)
+    assert found.point.observables == pytest.approx(expected.point.observables, rel=1e-9)
+    assert found.slope * expected.slope > 0
+    assert found.point.rates == pytest.approx(expected.point.rates, abs=1e-9)
+
+
+def test_a_curve_whose_folds_no_finer_grid_has_is_not_told_to_slide(monkeypatch):
+    chains_of = Rung.chains_of
+    lost = Unsolved("lost", NotConverged)
+    monkeypatch.setattr(Rung, "chains_of", lambda r, e: lost if e.condition == conditions.FOLD else chains_of(r, e))
+    path = fem_adhesion.trace(Scene(2.0, Block(radius=30.0, far_field="clamped")), rtol=0.1)
+    assert set(path.events) == {"pull_off", "zero_load"}
+    assert path.jumps is None
+    assert len(path.unconfirmed) == 2
 
 
 def point(arclength, approach):
