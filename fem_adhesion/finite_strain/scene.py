@@ -36,7 +36,7 @@ from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, 
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import REMAINING, ErrorRule, Event
+from halfspace.equilibrium.events import LEAST, REMAINING, ErrorRule, Event
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged, Unsolved
@@ -77,7 +77,7 @@ def trace(
             "take LinearElastic"
         )
     began = time.perf_counter()
-    rung = partial(Stages(scene, settings).rung, _lowest_degree(rtol, scene.tabor), to_load)
+    rung = partial(Stages(scene, settings).rung, rtol, to_load)
     with _cause_told(scene, settings):
         path = climb(rtol, rung, to_load=to_load, most_rungs=settings.most_rungs)
         _require_no_needle(path.stages[-1])
@@ -94,7 +94,7 @@ class Stages(Valued):
     settings: Settings = USUAL
     along: dict[int, Windows] = field(default_factory=dict, compare=False, repr=False)
 
-    def rung(self, lowest: int, to_load: float, level: int) -> Rung:
+    def rung(self, rtol: float, to_load: float, level: int) -> Rung:
         """Rung of a level: the degree and, from the second level on, other cells of the degree below before it.
 
         On the lowest level events come from the curve of the linear body, where strains are small, and are solved for
@@ -104,15 +104,16 @@ class Stages(Valued):
         Where the tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2.
         One chain has no twin beside it: the shift of an event along the path counts, see `ErrorRule.along`.
         """
-        degree = lowest + max(level, 1)
+        degree = _lowest_degree(rtol, self.scene.tabor) + max(level, 1)
         linear = not level and nearly_linear(self.scene, to_load, self.settings)
         curve = partial(linear_charts, self.scene, to_load) if linear else partial(iter, self.windows(degree - 1))
         other, body = self.body(degree - 1, *GRIDS.twin[:2]), self.body(degree)
         bodies = [other] if not level else [body] if level == 1 else [other, body]
         stages = tuple(Raising(one, partial(Stages.windows, self, one.how.degree)) for one in bodies)
-        left = REMAINING / self.scene.scales.gradual
+        left, parts = REMAINING / self.scene.scales.gradual, (1.0, self.settings.other_cells)
         settings = {"linear": linear, **asdict(bodies[-1].how)}
-        return Rung(curve, stages, settings, rule=ErrorRule(left, parts=(1.0, self.settings.other_cells), along=True))
+        rule = ErrorRule(left, parts=parts, along=True, least=LEAST * rtol)
+        return Rung(curve, stages, settings, rule=rule)
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
@@ -156,7 +157,7 @@ def find_jumps(scene: Scene, rtol: float = 1e-4, settings: Settings = USUAL) -> 
     same numbers, and serves scenes whose curve is lost.
     """
     _require(scene, rtol, COMPRESSION)
-    rung = partial(Stages(scene, settings).rung, _lowest_degree(rtol, scene.tabor), LITTLE)
+    rung = partial(Stages(scene, settings).rung, rtol, LITTLE)
     lowest, curve = rung(0), trace_charts(linear_charts(scene, LITTLE), LITTLE)
     found = {name: event for name, event in find_events(curve).items() if name in JUMPS}
     with _cause_told(scene, settings):
