@@ -18,7 +18,7 @@ from fem_adhesion.scene import Scene, require_scene
 from fem_adhesion.weak_form.body import Array, box, discretise
 from fem_adhesion.weak_form.contact import Contact
 from fem_adhesion.weak_form.newton import Equilibrium, at_gap, even, newton
-from halfspace.equilibrium.events import Event, Tolerance, WithEvents, points_of, tolerance_told
+from halfspace.equilibrium.events import Event, Tolerance, WithEvents, is_fold, points_of, tolerance_told
 from halfspace.errors import InputError, NotConverged, tried
 from halfspace.laws import LENNARD_JONES
 from halfspace.limits import require_between
@@ -218,8 +218,9 @@ def trace(
         coarse, points = events, [path.again(point) for point in points]
         before, values = values, np.array([point.observables for point in points])
         events = path.events(points)
-        alike = events.keys() == coarse.keys()  # else a fold of one may not be that of the other
-        told = {name: _event(name, path, coarse[name] if alike else None, event) for name, event in events.items()}
+        if events.keys() != coarse.keys():  # a fold of one may not be that of the other
+            coarse = {name: event for name, event in coarse.items() if not is_fold(name)}
+        told = {name: _event(name, path, coarse.get(name), event) for name, event in events.items()}
         rough = any(event.contact_radius_error > rtol * event.contact_radius for event in told.values())
         if not (rough or Tolerance.on(told, rtol).missed(told)):
             break
@@ -255,7 +256,7 @@ def mesh_for(scene: Scene, rtol: float, to_load: float) -> Any:
 def _event(name: str, path: Path, coarse: Point | None, fine: Point) -> Event:
     """Numbers of an event on the finer elements, with errors.
 
-    Each errs by its change from the coarser elements, if these have the same events. As two numbers may agree by chance
+    Each errs by its change from the coarser elements, if these have it. As two numbers may agree by chance
     while the event moves along the path, where that turns they err no less than by what its move makes of them.
     """
     if coarse is None:

@@ -48,6 +48,7 @@ class ConditionSettings:
     solved: float = 3e-9  # relative size of the last step: after 1e-8 loads that should be zero were up to 3e-11
     nearby: float = 0.3  # arclength within which an event is looked for on another discretisation at once
     farthest: float = 1.0  # arclength to which the path is followed there to find it
+    points: int = 60  # of that path at most; 24 on a clamped block at a spike of 0.03 beta
     past: float = 1.5  # how far past it the first step aims, in secants
     widths: tuple[float, ...] = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
 
@@ -320,7 +321,7 @@ def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) 
         return _changes(way, point, condition) or point.arclength - way.arclength > LOCATE.farthest
 
     steps = Steps(first=min(LOCATE.past * abs(ahead), LOCATE.nearby), longest=LOCATE.nearby)
-    points = tried(follow, problem, way, metric, beyond, steps=steps)
+    points = tried(follow, problem, way, metric, beyond, steps=steps, max_points=LOCATE.points)
     if isinstance(points, Unsolved):
         return points
     if not _changes(way, points[-1], condition):
@@ -333,7 +334,8 @@ def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) 
     if not found or metric.along(event.point, found.point) > 0:
         return found
     slope = found.slope if condition.stationary else -found.slope  # of a rate both it and the arclength change sign
-    return replace(found, point=_turned(found.point), slope=slope)
+    back = replace(_turned(found.point), arclength=2 * way.arclength - found.point.arclength)
+    return replace(found, point=back, slope=slope)
 
 
 def _turned(point: Point) -> Point:

@@ -47,6 +47,7 @@ def test_a_fold_far_off_is_found_along_the_path():
     assert found.point.observables == pytest.approx(expected.point.observables, rel=1e-9)
     assert found.slope * expected.slope > 0
     assert found.point.rates == pytest.approx(expected.point.rates, abs=1e-9)
+    assert fold.point.arclength - found.point.arclength == pytest.approx(1.064, abs=1e-3)  # it went back
 
 
 def test_a_curve_whose_folds_no_finer_grid_has_is_not_told_to_slide(monkeypatch):
