@@ -167,7 +167,13 @@ def _changes(a: Point, b: Point, condition: Condition) -> bool:
 def _watched(
     problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric, depth: int = 8
 ) -> list[tuple[Point, Point]]:
-    """Halve the interval between two points as long as a pair of roots may hide in it, unseen at its ends."""
+    """Halve the interval between two points as long as a pair of roots may hide in it, unseen at its ends.
+
+    Of a value that an observable comes near to and goes away from, the roots are on the two sides of where that turns.
+    """
+    if _comes_near(a, b, condition):
+        turn = between(problem, a, b, replace(condition, stationary=True), metric)
+        return [(a, turn.point), (turn.point, seen_from(turn.point, b, metric))] if turn else [(a, b)]
     if not depth or not _may_hide(a, b, condition, metric):
         return [(a, b)]
     middle = part_way(problem, a, b, 0.5, metric)
@@ -203,6 +209,15 @@ def _may_hide(a: Point, b: Point, condition: Condition, metric: Metric) -> bool:
     little = PATH.nearly * max(abs(first), abs(last))
     inside = least_slope(first, last, mean)
     return inside < little or (length > LOCATE.long and min(abs(first), abs(last)) < little)
+
+
+def _comes_near(a: Point, b: Point, condition: Condition) -> bool:
+    """Whether an observable may go to a value and come back from it between two points."""
+    if condition.stationary or _changes(a, b, condition):
+        return False
+    first, last = condition.of(a), condition.of(b)
+    reach = (b.arclength - a.arclength) * max(abs(condition.rate(a)), abs(condition.rate(b)))
+    return first * condition.rate(a) < 0 < last * condition.rate(b) and min(abs(first), abs(last)) < reach
 
 
 def _unfelt(a: Point, b: Point, condition: Condition) -> bool:

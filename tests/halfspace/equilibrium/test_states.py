@@ -11,12 +11,12 @@ import halfspace
 from fem_adhesion import cli
 from halfspace import Coated
 from halfspace.equilibrium.charts import metric_for, placed
-from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ZERO_LOAD, Located
-from halfspace.equilibrium.contact import CENTRAL_GAP
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ZERO_LOAD, Condition, Located
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP
 from halfspace.equilibrium.path import correct
 from halfspace.equilibrium.search import states
 from halfspace.errors import InputError
-from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, PowerLaw
+from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, Sphere
 
 
@@ -191,6 +191,17 @@ def test_the_first_point_in_contact_is_within_its_errors(tabor, rtol, law):
     """By accident its radius hardly changes: it was 2.6 and 3.8 times outside, as none is beside it on its grid."""
     path, truth = (halfspace.trace(tabor, law=law, rtol=part) for part in (rtol, 1e-8))
     _judge((number for far, number in _plane_differences(path, truth) if not far), within=1.0)
+
+
+def test_states_on_both_sides_of_a_fold_are_found():
+    """Two states between the same points of the path were passed over: neither end lies beyond the value."""
+    path = halfspace.trace(2.18, profile=Power(3.45), law=Morse(5.03), rtol=1e-5)
+    at = path.branches("approach")
+    for value in np.linspace(at["unstable 1"][0], at["unstable 1"][1], 9)[1:-1]:
+        on = [low < value < high for low, high in at.values()]
+        gaps = [path.at(approach=value, branch=name).central_gap for name, here in zip(at, on, strict=True) if here]
+        found = [state.point.observables for state in path.states(Condition(APPROACH, value=value))]
+        assert [numbers[2] for numbers in found] == pytest.approx(gaps, abs=1e-2)
 
 
 def test_ripples_of_a_coarse_grid_are_no_extrema():
