@@ -48,7 +48,7 @@ def contour(plane: Sequence[DeviationRow], level: float) -> tuple[Array, Array]:
 
 def _last_crossing(plane: Sequence[DeviationRow], level: float) -> float:
     known = sorted(
-        (row.radius_ratio, row.deviation.value) for row in plane if row.radius_ratio and row.deviation if row.known
+        (row.radius_ratio, row.deviation.value) for row in plane if row.known and row.radius_ratio and row.deviation
     )
     ratio, y = np.reshape(known, (-1, 2)).T
     x, size = np.log(ratio), np.abs(y)

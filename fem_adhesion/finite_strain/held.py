@@ -78,13 +78,14 @@ class HeldBody(Valued):
     """A body with what holds it: forces, tangent and energy of its n reduced unknowns y, u = T y.
 
     The dissection says how all of them are eliminated but those on which the surface law and the controls may depend.
-    The tangent made last is `made`; as it depends on delta y alone, bodies of other stretch may share it.
+    The tangent made last is `made`; as it depends on delta y alone, bodies of other stretch may share it. It says
+    nothing of the body, so it is not compared, but it is pickled: the last digits of what is solved next go by it.
     """
 
     body: Body
     dissection: Dissection
     settings: Settings = USUAL
-    made: list[Tangent] = field(default_factory=list)
+    made: list[Tangent] = field(default_factory=list, compare=False, repr=False)
 
     @property
     def exterior(self) -> Exterior:

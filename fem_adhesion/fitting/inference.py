@@ -350,9 +350,14 @@ class Best:
         """Chi square per degree of freedom, or 1 if that is less: intervals grow by its root, as a misfit demands."""
         return max(1.0, self.chi2 / self.degrees)
 
+    @cached_property
+    def rest(self) -> Array:
+        """Whitened residuals, of the samples first."""
+        return self.problem.residuals(self.x)
+
     def residuals(self) -> Iterator[tuple[Run, Array]]:
         """Whitened residuals of the samples, run after run."""
-        rest = self.problem.residuals(self.x)
+        rest = self.rest
         for run in self.problem.data.runs:
             count = self.problem.data.travel[run.samples].size
             yield run, rest[:count]
@@ -367,14 +372,14 @@ class Best:
     def whole(self) -> Array:
         """Jacobian by the coordinates and, last, ln tabor."""
         shifted = self.problem.at(self.problem.log_tabor + SHIFT, self.x).residuals(self.x)
-        return np.column_stack([self.jacobian, (shifted - self.problem.residuals(self.x)) / SHIFT])
+        return np.column_stack([self.jacobian, (shifted - self.rest) / SHIFT])
 
     @cached_property
     def slope(self) -> float:
         """Derivative of the least chi square by ln tabor: what the other coordinates take up does not count."""
         by_tabor = self.whole[:, -1]
         along = by_tabor - self.jacobian @ np.linalg.lstsq(self.jacobian, by_tabor)[0]
-        return 2 * float(self.problem.residuals(self.x) @ along)
+        return 2 * float(self.rest @ along)
 
     @property
     def tabor_error(self) -> float:

@@ -66,6 +66,7 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     critical_tabor = Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7)))
     below = critical_tabor.value * (1 - np.geomspace(0.999, 1e-3, given.border))
     begin("claims")
+    winding = halfspace.trace(given.winding_at, rtol=10 * given.rtol), paths[given.winding_at]
     omitting = [paths[mu] for mu in given.omitted]
     wrong = {(mu, wide): false_rise([paths[mu]], wide, window=1.5, steps=8) for mu, wide in given.coarse}
     return Facts(
@@ -79,8 +80,8 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
         criteria=fit(np.array(given.jumps), gaps, approaches),
         jumps=_jumps(paths[given.jumps_at], given.apparatus),
         pull_offs=pull_offs,
-        profiles=_profiles(paths[given.winding_at], [float(gap) for gap, _ in tables.PROFILE_CHECKS]),
-        more_profiles=_profiles(paths[given.winding_at], given.profile_gaps),
+        profiles=_profiles(winding, [float(gap) for gap, _ in tables.PROFILE_CHECKS]),
+        more_profiles=_profiles(winding, given.profile_gaps),
         table_1=tables.table_1(),
         table_2=tables.table_2(paths),
         profile_checks=tables.profile_checks(),
@@ -121,12 +122,9 @@ def _jumps(path: EquilibriumPath, apparatus: float) -> dict[tuple[str, str], Jum
     return found
 
 
-def _profiles(path: EquilibriumPath, gaps: Sequence[float]) -> tuple[DrawnState, ...]:
-    """States with given central gaps, their errors by comparison with those of a coarser grid."""
-    coarser = halfspace.trace(path.tabor, rtol=10 * path.rtol)
-    return tuple(
-        _profile(*(one.states(Condition(CENTRAL_GAP, value=gap))[0] for one in (coarser, path))) for gap in gaps
-    )
+def _profiles(paths: Sequence[EquilibriumPath], gaps: Sequence[float]) -> tuple[DrawnState, ...]:
+    """States with given central gaps on the last of two paths, their errors by the other's coarser grid."""
+    return tuple(_profile(*(path.states(Condition(CENTRAL_GAP, value=gap))[0] for path in paths)) for gap in gaps)
 
 
 def _profile(coarse: Located, fine: Located) -> DrawnState:

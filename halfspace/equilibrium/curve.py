@@ -17,7 +17,6 @@ from halfspace.equilibrium.events import (
     Event,
     Unconfirmed,
     WithEvents,
-    approach_scale,
     is_fold,
     points_of,
     tolerance_told,
@@ -109,7 +108,7 @@ class EquilibriumPath(WithEvents, Valued):
     @property
     def approach_scale(self) -> float:
         """Size in eps that approaches are measured by, see `halfspace.equilibrium.events.approach_scale`."""
-        return approach_scale(event.approach for event in usual(self.events).values())
+        return self.tolerance.approach
 
     def __repr__(self) -> str:
         """What was asked and found: events with their errors, energy, effort."""

@@ -26,6 +26,7 @@ from fem_adhesion.assess.study import assess
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.crosscheck import scenes as crosscheck
 from halfspace import Coated, Layer, Layers, Stratum
+from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
@@ -33,14 +34,13 @@ from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
 from halfspace.values import Estimate
 
 MESHES = Path(__file__).parents[2] / "meshes"
-QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 
 # Numbers of an answer
 
 
 def of_path(path):
     """Events and energy."""
-    found = {f"{name} {q}": _estimate(event, q) for name, event in path.events.items() for q in QUANTITIES}
+    found = {f"{name} {q}": _estimate(event, q) for name, event in path.events.items() for q in OBSERVABLES}
     return _real(found | {"energy": path.energy})
 
 
@@ -61,14 +61,14 @@ def of_springs(path, stiffnesses=(1e-6, 1e-2, 1.0, math.inf)):
             for jump in ("jump_on", "jump_off"):
                 for end in ("take_off", "landing"):
                     where, at = f"k = {k:g}, {jump} {end}", getattr(getattr(both, jump), end)
-                    found |= {f"{where} {q}": _estimate(at, q) for q in QUANTITIES}
+                    found |= {f"{where} {q}": _estimate(at, q) for q in OBSERVABLES}
             found |= {f"k = {k:g}, energy lost": both.energy_lost, f"k = {k:g}, energy": both.jump_on.energy}
     return _real(found)
 
 
 def of_curve(path):
     """Every second point."""
-    columns = [(q, getattr(path, q), getattr(path, f"{q}_error")) for q in QUANTITIES]
+    columns = [(q, getattr(path, q), getattr(path, f"{q}_error")) for q in OBSERVABLES]
     every_second = range(0, path.count, 2)
     return _real({f"point {k} {q}": Estimate(float(v[k]), float(e[k])) for q, v, e in columns for k in every_second})
 
@@ -93,7 +93,7 @@ def of_states(path, asked=None):
         except InputError:
             continue
         where = _where(coordinate, branch, value)
-        found |= {f"{q} {where}": _estimate(state, q) for q in QUANTITIES if q != coordinate}
+        found |= {f"{q} {where}": _estimate(state, q) for q in OBSERVABLES if q != coordinate}
     return _real(found)
 
 
@@ -168,20 +168,20 @@ def tighter(numbers, asked, solve, scene, path, rtol):
 
 def any_scene(scene, path, rtol):
     """Of a half-space and what stands for one, as a block, the curve is traced anew; others' events are found again."""
-    return traced(truths.half_space_of, scene) if truths.endless(scene) else relocated(truths.of, scene, path, rtol)
+    return traced(truths.of, scene) if truths.endless(scene) else relocated(truths.of, scene, path, rtol)
 
 
 def found_again(drawn, path, _=None):
     """Events and states of a drawn scene, from where they are on the curve, on grids that share nothing with those."""
-    stages = truths.half_space_of(drawn.scene) if truths.endless(drawn.scene) else truths.of(drawn.scene)
-    states = {_where(*place): truths.state_of(path, *place) for place in few_places(path)}
-    pairs = truths.relocated(path.stages[-1] | states, stages)
-    return _by_two(truths.of_state(found) | _of_places(found, states) for found in pairs)
+    places = {_where(*place): place for place in few_places(path)}
+    states = {where: truths.state_of(path, *place) for where, place in places.items()}
+    pairs = truths.relocated(path.stages[-1] | states, truths.of(drawn.scene))
+    return _by_two(truths.of_state(found) | _of_places(found, places) for found in pairs)
 
 
-def _of_places(found, states):
-    every = {(where, q): v for where in states for q, v in truths.numbers(found[where]).items()}
-    return {f"{q} {where}": v for (where, q), v in every.items() if not where.startswith(f"at {q} ")}
+def _of_places(found, places):
+    told = {where: truths.numbers(found[where]) for where in places}
+    return {f"{q} {where}": told[where][q] for where, (given, *_) in places.items() for q in OBSERVABLES if q != given}
 
 
 def in_si(contact, assessment, _):

@@ -22,6 +22,7 @@ from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.equilibrium.charts import moved, placed, trace_charts
 from halfspace.equilibrium.conditions import FOLD, Condition, Located
+from halfspace.equilibrium.contact import CENTRAL_GAP, OBSERVABLES
 from halfspace.equilibrium.events import is_event, numbered
 from halfspace.equilibrium.search import brackets_of, energy_released, find_events, with_care
 from halfspace.errors import required
@@ -126,7 +127,9 @@ def endless(scene):
 
 
 def of(scene):
-    """Two stages for any scene with a length of its own; by harmonics they would take minutes at tabor 10."""
+    """Two stages for any scene; by harmonics those of a sphere would take minutes at tabor 10."""
+    if endless(scene):
+        return half_space_of(scene)
     if scene.material.finite:
         return finite_strain(scene)
     if scene.body.layered:
@@ -155,12 +158,9 @@ def harmonics(scene):
     return [standing(series(scene, how)) for how in hows]
 
 
-QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
-
-
 def numbers(state):
     """Numbers of a located state by name."""
-    return {name: float(v) for name, v in zip(QUANTITIES, state.point.observables, strict=True)}
+    return {name: float(v) for name, v in zip(OBSERVABLES, state.point.observables, strict=True)}
 
 
 def of_state(state):
@@ -173,8 +173,8 @@ def of_state(state):
 def state_of(path, coordinate, branch, value):
     """The state at a value of a coordinate on a branch of a path, on the grid on which it was traced."""
     asked = path.at(**{coordinate: value}, branch=branch)
-    there = path.states(Condition(QUANTITIES.index(coordinate), value=value))
-    return min(there, key=lambda state: abs(state.point.observables[2] - asked.central_gap))
+    there = path.states(Condition(OBSERVABLES.index(coordinate), value=value))
+    return min(there, key=lambda state: abs(state.point.observables[CENTRAL_GAP] - asked.central_gap))
 
 
 def points_on(stage, path, places):

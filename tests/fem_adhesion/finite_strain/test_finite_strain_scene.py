@@ -104,6 +104,10 @@ def test_events_are_raised_from_the_linear_body(monkeypatch):
     assert set(found.events) == {"pull_off", "jump_on", "jump_off", "zero_load"}
     held = [event.problem.held for stage in found.stages for event in stage.values()]
     assert not any(body.made for body in held)
+    before = replace(held[0], made=[])
+    held[0].tangent(np.zeros(held[0].size))
+    assert held[0].made
+    assert held[0] == before
 
 
 def test_the_spread_of_tractions_is_the_models_uncertainty(path):
