@@ -9,6 +9,7 @@ from collections import defaultdict
 import pytest
 
 from fem_adhesion import cli
+from fem_adhesion.curve import pictures
 
 (COMMANDS,) = [action.choices for action in cli.make_parser()._actions if action.choices]
 WRITTEN_DIRECTORIES = ("--out", "--problems", "--vtk")
@@ -33,12 +34,12 @@ def test_force_goes_with_directories_that_are_written(name):
     assert ("--force" in options) == any(directory in options for directory in WRITTEN_DIRECTORIES)
 
 
-# Others take long: their quick forms are run by test_readme, which reads the line too.
+# Others take long: test_readme reads the line of their quick forms, test_assess that of its own run.
 TIP = "--radius 100nm --modulus 72GPa --poisson 0.17"
 QUICK = {
-    "curve": "--tabor 0.1 --rtol 1e-2 --json a.json --csv a.csv --plot a.png --vtk fields --points 0",
+    "curve": "--tabor 0.1 --rtol 1e-2 --json a.json --csv a.csv --plot a.svg --vtk fields --points 0 "
+    "--render body.png --movie body.gif",
     "sweep": "--tabor 0.5 1 --csv a.csv --resume kept",
-    "assess": f"{TIP} --work-of-adhesion 0.063J/m^2 --hamaker 65zJ --json a.json --plot a.svg",
     "fit": f"{TIP} --nanite model.py",
     "formulas": "--out formulas",
     "benchmark": "--problems sheets --names half-space-1",
@@ -49,6 +50,10 @@ PLACES = {"curve": "fields", "formulas": "formulas", "benchmark": "sheets"}
 @pytest.mark.parametrize("name", QUICK)
 def test_a_command_says_in_one_line_what_it_wrote(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    for kind in ("picture", "movie"):  # which take long
+        monkeypatch.setattr(
+            pictures, f"write_{kind}", lambda _, file, *_at, kind=kind: file.buffer.write(kind.encode())
+        )
     line = [name, *QUICK[name].split()]
     assert cli.main(line) == 0
     out, err = capsys.readouterr()
@@ -58,7 +63,8 @@ def test_a_command_says_in_one_line_what_it_wrote(name, tmp_path, monkeypatch, c
     inside = f"{place}/ ({len(list((tmp_path / place).iterdir()))} files)" if place else ""
     assert set(told.replace(inside, "").split()) == made
     assert inside in told
-    if name in ("curve", "assess"):  # which take longest
+    if name == "curve":  # which takes longest
+        assert [(tmp_path / f"body.{kind}").read_text() for kind in ("png", "gif")] == ["picture", "movie"]
         return
     if place:
         assert cli.main(line) == 2
@@ -75,5 +81,7 @@ def test_words_leave_standard_output_to_data(tmp_path, capsys):
     assert json.loads(out)["scene"]
     assert f"written: {table} {table}-metadata.json\n" in err
     assert "pull-off" in err
-    assert cli.main([*line, "--csv", "-"]) == 0
-    assert next(csv.DictReader(io.StringIO(capsys.readouterr().out)))["solver"] == "half-space"
+    assert cli.main([*line, "--points", "5", "--csv", "-"]) == 0
+    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+    assert {row["solver"] for row in rows} == {"half-space"}
+    assert sum(not row["event"] for row in rows) == 5

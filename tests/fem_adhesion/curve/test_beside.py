@@ -45,8 +45,7 @@ def test_the_numbers_are_those_of_the_curves(collapsed):
     assert "morse k 3 at tabor" in beside.told(collapsed)
 
 
-@pytest.mark.parametrize("name", ["jump_on", "jump_off"])
-@pytest.mark.parametrize("quantity", ["approach", "load"])
+@pytest.mark.parametrize(("name", "quantity"), [("jump_on", "approach"), ("jump_off", "load")])
 def test_jumps_differ_by_their_largest_part_of_load_or_range(collapsed, name, quantity):
     """The first curve beside itself, moved in one number alone, at a Tabor parameter that scales its approaches."""
     law, path = collapsed[0]

@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from page_tables import rows_of
 from rich.console import Console
 from scenes import pair
 
@@ -18,7 +17,6 @@ from fem_adhesion import Hemisphere, cli
 from fem_adhesion.common import lines as curve_lines
 from fem_adhesion.common.scene_options import law_of
 from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.curve import pictures as module
 from fem_adhesion.curve import record as curve_record
 from fem_adhesion.curve import solve as study
 from fem_adhesion.curve import terminal as curve_terminal
@@ -264,34 +262,9 @@ def test_each_key_of_the_json_holds_what_it_says(both, real):
     assert si["material"] == {"radius": 1e-7, "modulus": 1.1e9, "work_of_adhesion": 0.05, "spacing": 3e-10}
 
 
-def test_every_kind_of_file_is_written_whole(tmp_path, monkeypatch, capsys):
-    """Through the command line; of figure, picture, movie and fields see the tests of each."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(module, "write_movie", lambda curves, file: file.buffer.write(curves.solver.encode()))
-    files = ["--json", "curve.json", "--csv", "curve.csv", "--points", "2", "--movie", "jump.gif"]
-    assert cli.main(["curve", "--tabor", "2", "--rtol", "1e-3", *files]) == 0
-    captured = capsys.readouterr()
-    assert captured.err == ""
-    made = {"curve.json", "curve.csv", "curve.csv-metadata.json", "jump.gif"}
-    assert {file.name for file in tmp_path.iterdir()} == made
-    (solution,) = json.loads((tmp_path / "curve.json").read_text())["solutions"].values()
-    load = solution["events"]["pull_off"]["load"]
-    assert load == pytest.approx(-4.9750, abs=1e-3)
-    rows = rows_of(tmp_path / "curve.csv")
-    assert next(float(row["load_R_dgamma"]) for row in rows if row["event"] == "pull_off") == load
-    assert f"{load:.2f}" in captured.out
-    assert (tmp_path / "jump.gif").read_text() == "finite elements"
-
-
-def test_a_pipe_gets_no_plot_and_a_terminal_does(both):
-    piped = _shown(both, 150, terminal=False)
-    assert "pull-off" in piped
-    assert "│" not in piped.split("In brackets")[1]
-    assert "approach, eps" in _shown(both, 150).split("In brackets")[1]
-
-
 @pytest.mark.parametrize("width", [150, 45])
 def test_numbers_are_whole_and_the_plot_fits_at_any_width(both, real, width):
+    assert "│" not in _shown(both, width, terminal=False).split("In brackets")[1], "a pipe gets no plot"
     for what in (both, real):
         text = _shown(what, width)
         assert "…" not in text
@@ -364,25 +337,19 @@ def test_hamaker_constant_and_edge_are_told_by_the_law(law, capsys):
         ("", "neither --tabor nor a material"),
         ("--tabor 0", "tabor = 0 is outside 0 < tabor"),
         ("--tabor 2 --radius 100nm", "give either --tabor or a material"),
-        ("--radius 100nm --modulus 1GPa", "--poisson, --work-of-adhesion, --spacing or --hamaker missing"),
         (f"{MATERIAL} --hamaker 65zJ", "--spacing and --hamaker are given"),
-        (f"{MATERIAL} --share 0.5", "--share would have no effect, limit: with --tabor"),
         (f"{MATERIAL} --counter half-space", "--counter would have no effect, limit: with --tabor"),
         (f"{MATERIAL} --counter-modulus 1GPa", "counter_poisson = None"),
         (f"{MATERIAL} --body held-sphere --counter-radius 1um", "a hemisphere meets another or a half-space"),
         ("--tabor 2 --body half-space:sliding", "limit: half-space; leave out sliding"),
         ("--tabor 2 --poisson 0.2", "--poisson would have no effect, limit: with a material, fem or both"),
         ("--tabor 2 --counter-poisson 0.2", "--counter-poisson would have no effect, limit: with --counter"),
-        ("--tabor 2 --counter half-space --share 0.5", "a hemisphere meets another or a half-space"),
         ("--tabor 2 --body hemisphere:9 --counter half-space", "share"),
         ("--tabor 2 --points 5", "--points would have no effect, limit: with --json, --csv"),
         ("--tabor 2 --revolve 90 --force", "--revolve, --force would have no effect"),
-        ("--tabor 2 --json a.txt --csv other/../a.txt", "is given for two outputs"),
         ("--tabor 2 --json - --csv -", "standard output is given for two outputs"),
-        ("--tabor 2 --plot -", "limit: one of .png, .svg, .pdf"),
         ("--tabor 2 --stiffness 1N/m", "not a plain number in R dgamma/eps"),
         ("--tabor 2 --plot a.gif", "ends in '.gif', limit: one of .png, .svg, .pdf"),
-        ("--tabor 2 --body hemisphere", "limit: hemisphere:radius_ratio,sliding|bonded; give radius_ratio"),
         ("--tabor 2 --profile sphere", "limit: sphere:radius_ratio,counter_radius; give radius_ratio, R/eps"),
         ("--tabor 2 --body drum:3", "body = drum, limit: one of half-space, block, hemisphere"),
         (
@@ -394,7 +361,6 @@ def test_hamaker_constant_and_edge_are_told_by_the_law(law, capsys):
         (f"{BY_HAMAKER} {MORSE}", "--hamaker would have no effect, limit: the 3-9 law"),
         ("--tabor 2 --solver half-space --body hemisphere:99", "take fem or both"),
         ("--tabor 2 --to-load 0", "to_load = 0"),
-        ("--tabor 2 --json /no/such/folder/a.json", "cannot be written"),
         ("--tabor 2 --vtk fields --solver half-space", "take --solver fem"),
         ("--tabor 2 --vtk fields --points -1", "points = -1"),
         ("--tabor 2 --vtk .", "--force"),
