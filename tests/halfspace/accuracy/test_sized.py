@@ -14,11 +14,16 @@ import halfspace
 from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic, Meshed, NeoHookean, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
+from halfspace import Coated
+from halfspace.accuracy.grids import resolution_for
+from halfspace.accuracy.layered import layered_body
 from halfspace.accuracy.standing import standing
+from halfspace.elastic.layered import images_of
 from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.states import met_again
 from halfspace.errors import InputError, Unsolved
 from halfspace.profiles import PARABOLOID, Paraboloid, Sphere
+from halfspace.scales import Scales
 
 HEMISPHERE = Scene(1.0, Hemisphere(radius_ratio=30.0))
 
@@ -34,16 +39,13 @@ def against(counter, share=0.5, of=HEMISPHERE.body):
 REFUSED = [
     (lambda: Scene(0.0), "tabor = 0 is outside 0 < tabor"),
     (lambda: Scene(301.0), "tabor = 301 is outside tabor <= 300"),
-    (lambda: Scene(float("nan")), "tabor = nan"),
     (body(poisson=0.5), "poisson = 0.5 is outside 0 <= poisson < 0.5"),
-    (body(poisson=-0.1), "poisson = -0.1"),
     (body(poisson=0.2, material=NeoHookean(0.3)), "give one of them, not both"),
     (lambda: Scene(1.0, "cube"), "body = 'cube' is no body; take fem_adhesion.Hemisphere"),
     (lambda: Scene(1.0, Path("body.msh")), "is no body"),
     (lambda: Scene(1.0, HEMISPHERE.body, counter="cube", share=0.5), "counter = 'cube' is no body"),
     (body(grip="glued"), "grip = 'glued' is not one of sliding, bonded"),
     (lambda: Scene(1.0, Meshed("any.msh", radius_ratio=30.0), Sphere(30.0)), "does not go with meshed"),
-    (lambda: LinearElastic(traction="tilted"), "traction = 'tilted' is not one of projected, surface"),
     (lambda: LinearElastic(traction="normal"), "traction = 'normal' is not one of projected, surface"),
     (
         lambda: NeoHookean(traction="surface"),
@@ -52,13 +54,10 @@ REFUSED = [
     (lambda: Block(radius=50.0, far_field="hinged"), "far_field = 'hinged' is not one of point_load, clamped, free"),
     (body(radius_ratio=None), "radius_ratio = None of type NoneType, limit: a real number"),
     (body(radius_ratio=1.9), "radius_ratio = 1.9 is outside 2 <= radius_ratio"),
-    (body(radius_ratio=1e13), "outside 2 <= radius_ratio <= 1e12"),
     (body(radius_ratio=float("nan")), "radius_ratio = nan"),
-    (body(radius_ratio=float("inf")), "radius_ratio = inf"),
     (body(tabor=10.0, radius_ratio=22.0), "radius_ratio = 22 is outside 2.25 tabor = 22.5 or more"),
     (lambda: Scene(10.0, profile=Sphere(22.0)), "radius_ratio = 22 is outside 2.25 tabor = 22.5 or more"),
     (body(HeldSphere, cap_angle=0.5), "cap_angle = 0.5 is outside 1 <= cap_angle <= 89.99 and is not 90"),
-    (body(HeldSphere, cap_angle=91.0), "cap_angle = 91"),
     (lambda: Scene(1.0, Block(radius=50.0), Sphere(30.0)), "does not go with block; take a half-space"),
     (against(HalfSpace(), of=HeldSphere(radius_ratio=30.0)), "does not go with body = held-sphere"),
     (against(HalfSpace(), of=HalfSpace()), "does not go with body = half-space"),
@@ -68,7 +67,6 @@ REFUSED = [
     (lambda: HalfSpace(material=NeoHookean()), "does not go with half-space"),
     (lambda: HalfSpace(material=LinearElastic(traction="surface")), "traction = surface does not go with half-space"),
     (against(HalfSpace(), 0.0), "share = 0 is outside 0 < share < 1"),
-    (against(HalfSpace(), 1.0), "share = 1 is outside 0 < share < 1"),
     (against(HalfSpace(), None), "share = None of type NoneType, limit: a real number"),
     (against(None), "share = 0.5 without a counter-body"),
     (against(Hemisphere(radius_ratio=15.0)), "radius_ratio = 15 of the counter-body is outside 30 <= radius_ratio"),
@@ -84,20 +82,15 @@ def test_a_scene_that_cannot_be_is_refused_with_value_limit_and_remedy(make, mes
     assert ";" in text  # after it, the remedy or the reason
 
 
-def test_a_body_says_how_long_its_scene_is():
+def test_a_scene_says_how_long_its_bodies_are():
     """The R/eps of a pair is that of both, and its bodies have their own in the units of the pair."""
     scene = pair(1.0, 30.0, 0.4, 0.45, 3.0)
     assert (scene.body.radius_ratio, scene.counter.radius_ratio) == (40.0, 120.0)
     assert scene.radius_ratio == pytest.approx(30.0, rel=1e-14)
     assert scene.radii == pytest.approx([np.sqrt(30.0) * 4 / 3, np.sqrt(30.0) * 4], rel=1e-14)
     assert scene.surface.end == pytest.approx(scene.radii[0], rel=1e-14)
-
-
-@pytest.mark.parametrize("scene", [Scene(1.0, HalfSpace(poisson=0.45)), Scene(1.0, Block(radius=50.0))])
-def test_the_half_space_under_a_paraboloid_has_no_length(scene):
-    assert not scene.sized
-    assert scene.sphere_radius == np.inf
-    assert scene.radius_ratio is None
+    endless = Scene(1.0, Block(radius=50.0))
+    assert (endless.sized, endless.sphere_radius, endless.radius_ratio) == (False, np.inf, None)
 
 
 def test_a_poissons_ratio_is_short_for_a_material():
@@ -114,23 +107,6 @@ def test_a_surface_ends_where_its_body_does():
     radii = np.linspace(0, 1, 5)
     np.testing.assert_array_equal(scene.surface.height(radii), radii**2 / 2)
     np.testing.assert_array_equal(scene.surface.slope(radii), radii)
-
-
-@pytest.fixture(scope="module")
-def spheres():
-    """The half-space under true spheres, by R/eps; None is the paraboloid."""
-    profiles = {None: PARABOLOID, 10.0: Sphere(10.0), 100.0: Sphere(100.0)}
-    return {rho: halfspace.trace(1.0, profile=profile, rtol=1e-5) for rho, profile in profiles.items()}
-
-
-def test_the_half_space_under_a_sphere_has_the_events_of_finite_elements(spheres):
-    """Both solve the same equations for each event, on grids and by operators of their own."""
-    path, stage = spheres[10.0], standing(sized_body(Scene(1.0, profile=Sphere(10.0)), Discretisation(6)))
-    for name in ("pull_off", "jump_on", "jump_off"):
-        event, found = path.event(name), path.stages[-1][name]
-        approach, load = moved(found, stage(found).problem).point.observables[:2]
-        assert abs(event.approach - approach) <= event.approach_error + 3e-6 * (1 + abs(approach)), name
-        assert abs(event.load - load) <= event.load_error + 3e-6 * abs(load), name
 
 
 def test_the_vertical_tangent_at_the_equator_leaves_no_more_than_the_estimates():
@@ -153,31 +129,32 @@ def test_meshes_for_one_chart_have_the_same_cells():
     assert np.abs((operator.at(1.3).compliance - exact.compliance) @ pressure).max() < 1e-9
 
 
+def test_operators_on_a_stiff_coating_are_known_between_their_radii():
+    """By fewer than its yield asks for they were a hundred times worse: a curve rippled, its points had no errors."""
+    scales = Scales(4.0, profile=Sphere(20.0, 1.0).surface(4.0), body=Coated(0.5, 100.0))
+    body = layered_body(scales, images_of(scales.body), resolution_for(scales, 1e-3))
+    operator = body.curve()[1].problem.operator
+    known = operator.kernel.parts[0].lengths
+    for a in np.sqrt(known[1:] * known[:-1])[::3]:
+        exact, pressure = body.make(operator.grid.lines(a))[0], np.exp(-((operator.at(a).radii / a) ** 2))
+        off = (operator.at(a).compliance - exact.compliance) @ pressure
+        assert np.abs(off).max() < 2e-9 * np.abs(exact.compliance @ pressure).max()
+
+
 def test_the_tightest_tolerance_is_met_under_a_sphere():
-    """The approach at pull-off, the place of a flat extremum, is from operators four times as wide apart."""
-    tight = halfspace.trace(2.0, profile=Sphere(10.0), rtol=1e-9)
-    assert tight.met
-    pull_off = tight.event("pull_off")
-    assert abs(pull_off.approach - -2.083525446222) <= pull_off.approach_error < 1e-9
-
-
-def test_near_and_flat_folds_meet_the_tightest_tolerance():
     """Between nodes crowding at the equator a polynomial of the radius ran wild, and led to where surfaces overlap."""
     path = halfspace.trace(0.8, profile=Sphere(8.0), rtol=1e-9)
     assert path.met
     assert path.event("jump_on").load == pytest.approx(-2.28260161226, abs=2e-10)
 
 
-def test_the_sphere_tends_to_the_paraboloid_as_one_over_rho(spheres):
+def test_the_sphere_tends_to_the_paraboloid_as_one_over_rho():
+    profiles = PARABOLOID, Sphere(10.0), Sphere(100.0)
+    paths = [halfspace.trace(1.0, profile=profile, rtol=1e-5) for profile in profiles]
     for name in ("pull_off", "jump_on", "jump_off"):
-        far, near = (from_paraboloid(spheres, rho, name) for rho in (10.0, 100.0))
+        at_all, *spheres = (np.array([path.event(name).approach, path.event(name).load]) for path in paths)
+        far, near = (sphere - at_all for sphere in spheres)
         assert np.log10(np.abs(far / near)) == pytest.approx([1.0, 1.0], abs=0.1)
-
-
-def from_paraboloid(spheres, rho, name):
-    """Approach and load of an event less those of the paraboloid."""
-    sphere, paraboloid = spheres[rho].event(name), spheres[None].event(name)
-    return np.array([sphere.approach - paraboloid.approach, sphere.load - paraboloid.load])
 
 
 def test_an_event_that_its_own_grid_does_not_give_is_found_near_there_by_few_operators(monkeypatch):

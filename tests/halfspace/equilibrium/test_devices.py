@@ -15,7 +15,7 @@ from halfspace import Layer
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.contact import LOAD
-from halfspace.equilibrium.devices import cycle, energy_lost, jumps, reaching
+from halfspace.equilibrium.devices import cycle, energy_lost, jumps
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 
@@ -39,30 +39,16 @@ def test_a_jump_lands_at_the_base_it_took_off_from(path, stiffness):
     assert np.isnan(found.jump_off.landing.contact_radius)
 
 
-def test_stiff_and_soft_limits(path):
-    grips = cycle(path)
-    assert grips.jump_on.take_off.approach == pytest.approx(path.event("jump_on").approach, abs=1e-9)
-    assert grips.jump_off.take_off.load == pytest.approx(path.event("jump_off").load, abs=1e-8)
-    assert cycle(path, 1e9).energy_lost.value == pytest.approx(grips.energy_lost.value, rel=1e-6)
-    soft = cycle(path, 1e-3)
-    assert soft.jump_off.take_off.load == pytest.approx(path.event("pull_off").load, rel=1e-5)
-
-
 def test_a_take_off_has_the_errors_of_the_event_that_it_is(path):
     """Under fixed grips that of the fold, under a soft spring that of pull-off, where a radius is shifted at once."""
-    taken_off = {
-        "jump_on": cycle(path).jump_on,
-        "jump_off": cycle(path).jump_off,
-        "pull_off": cycle(path, 1e-8).jump_off,
-    }
-    for name, jump in taken_off.items():
+    grips, soft = cycle(path), cycle(path, 1e-8)
+    for name, jump in (("jump_on", grips.jump_on), ("jump_off", grips.jump_off), ("pull_off", soft.jump_off)):
+        assert jump.take_off.load == pytest.approx(path.event(name).load, abs=1e-7)
         for quantity in ("approach", "load", "central_gap", "contact_radius"):
             own, event = (getattr(state, f"{quantity}_error") for state in (jump.take_off, path.event(name)))
             assert own == pytest.approx(event, rel=0.05, abs=1e-10, nan_ok=True), (name, quantity)
-
-
-def test_the_loss_on_one_grid_is_that_of_the_cycle(path):
-    assert energy_lost(path.segments) == pytest.approx(cycle(path).energy_lost.value, rel=1e-5)
+    assert cycle(path, 1e9).energy_lost.value == pytest.approx(grips.energy_lost.value, rel=1e-6)
+    assert energy_lost(path.segments) == pytest.approx(grips.energy_lost.value, rel=1e-5)
 
 
 def test_a_contact_radius_is_known_as_the_gap_ripples():
@@ -83,8 +69,8 @@ def test_a_soft_apparatus_that_lands_far_away_is_accurate(path):
     assert not replace(found, tolerance=replace(found.tolerance, rtol=1e-13)).met
 
 
-@pytest.mark.parametrize("stiffness", [3.0, 0.5])
-def test_the_work_round_the_loop_is_what_its_jumps_free(path, stiffness):
+def test_the_work_round_the_loop_is_what_its_jumps_free(path):
+    stiffness = 0.5
     found = cycle(path, stiffness)
     low, high = (_base(jump.take_off, stiffness) for jump in (found.jump_off, found.jump_on))
     # The load has a square root at the fold where each branch ends, so the nodes are graded towards it.
@@ -109,7 +95,7 @@ def _work(path, stiffness, low, high, *, contact):
     return total
 
 
-@pytest.mark.parametrize("tabor", [0.05, 0.3, 0.65])
+@pytest.mark.parametrize("tabor", [0.05, 0.65])
 def test_below_its_critical_stiffness_an_apparatus_jumps(tabor):
     path, stiffness = halfspace.trace(tabor, rtol=1e-5), critical_stiffness(tabor)
     assert cycle(path, 1.001 * stiffness) is None
@@ -122,23 +108,17 @@ def test_critical_stiffness_tends_to_bradleys_steepest_fall():
     assert critical_stiffness(0.697) > 5000
 
 
-@pytest.mark.parametrize("rtol", [1e-2])
-@pytest.mark.parametrize(("tabor", "stiffness"), [(0.75, 0.5), (2.0, math.inf), (8.0, 3.0)])
-def test_the_error_of_an_energy_is_by_its_change_over_grids(tabor, stiffness, rtol):
-    """Or from a twin, or a coarser grid, if that is more; it holds the truth of a tighter curve."""
-    path, truth = halfspace.trace(tabor, rtol=rtol), cycle(halfspace.trace(tabor, rtol=1e-4 * rtol), stiffness)
+@pytest.mark.parametrize(("tabor", "stiffness"), [(0.75, 0.5), (8.0, 3.0)])
+def test_the_error_of_an_energy_is_by_its_change_over_grids(tabor, stiffness):
+    """Or from a twin, or a coarser grid, if that is more."""
+    path = halfspace.trace(tabor, rtol=1e-2)
     found, rough = cycle(path, stiffness), jumps(path.segments, 1 / stiffness)
-    for jump, before, known in zip(
-        (found.jump_on, found.jump_off), rough, (truth.jump_on, truth.jump_off), strict=True
-    ):
+    for jump, before in zip((found.jump_on, found.jump_off), rough, strict=True):
         left = max(path.ladder.rule.remaining, 1) * abs(jump.energy.value - before.energy(1 / stiffness))
         rounding = 2e-11 * (1 + jump.energy.value)
         least = path.ladder.rule.least * abs(jump.energy.value)
         assert left - rounding <= jump.energy.error <= max(10 * left + rounding, least)
-        assert abs(jump.energy.value - known.energy.value) <= jump.energy.error
-    assert found.energy_lost.value == found.jump_on.energy.value + found.jump_off.energy.value
-    assert found.energy_lost.error == found.jump_on.energy.error + found.jump_off.energy.error
-    assert abs(found.energy_lost.value - truth.energy_lost.value) <= found.energy_lost.error
+    assert found.energy_lost == found.jump_on.energy + found.jump_off.energy
 
 
 def test_the_errors_of_a_take_off_count_a_twin():
@@ -158,7 +138,7 @@ def test_the_errors_of_a_take_off_count_a_twin():
     assert counted > 0
 
 
-@pytest.mark.parametrize("stiffness", [0.0, -1.0, float("nan")])
+@pytest.mark.parametrize("stiffness", [0.0, float("nan")])
 def test_an_apparatus_has_a_positive_stiffness(path, stiffness):
     with pytest.raises(ValueError, match="outside 0 < stiffness; a dead load jumps off at pull_off"):
         cycle(path, stiffness)
@@ -169,7 +149,7 @@ def test_coarse_states_on_a_hemisphere_hold_their_errors():
     import fem_adhesion
 
     scene = fem_adhesion.Scene(1.0, fem_adhesion.Hemisphere(radius_ratio=20.0))
-    coarse, fine = (fem_adhesion.trace(scene, rtol=rtol) for rtol in (1e-2, 1e-5))
+    coarse, fine = (fem_adhesion.trace(scene, rtol=rtol) for rtol in (1e-2, 1e-4))
     told, expected = (
         [*path.events.values(), *cycle(path, 0.5).jump_on.ends, *cycle(path, 0.1).jump_on.ends]
         for path in (coarse, fine)
@@ -181,11 +161,6 @@ def test_coarse_states_on_a_hemisphere_hold_their_errors():
     assert abs(coarse.energy.value - fine.energy.value) <= coarse.energy.error + fine.energy.error
 
 
-@pytest.fixture(scope="module")
-def stiff_path():
-    return halfspace.trace(0.3, rtol=1e-6)
-
-
 def test_a_soft_cantilever_jumps_on_beyond_the_curve():
     path = halfspace.trace(1e-3, rtol=1e-6)
     stiffness = 1e-4
@@ -193,58 +168,30 @@ def test_a_soft_cantilever_jumps_on_beyond_the_curve():
     gap = brentq(lambda h: 16 * np.pi / 3 * (h**-3 - h**-9) - stiffness, 2, 200)
     assert 1 - gap < path.approach[0]
     on = found.jump_on.take_off
-    assert on.approach == pytest.approx(1 - gap, rel=1e-5)
-    assert on.load == pytest.approx(float(closed_forms.bradley_load(1 - gap)), rel=1e-4)
     assert abs(on.approach - (1 - gap)) < on.approach_error + 1e-6 * gap
     assert abs(on.load - float(closed_forms.bradley_load(1 - gap))) < on.load_error + 1e-6 * abs(on.load)
     assert Scales(path.tabor).rigid_jump_on(stiffness) == pytest.approx(1 - gap, rel=1e-6)
 
 
-@pytest.mark.parametrize("stiffness", [1e-2, 1e-12])
-@pytest.mark.parametrize("rtol", [1e-2, 1e-6])
-def test_jumps_of_any_soft_apparatus_hold_their_errors(truth, rtol, stiffness):
-    """Against the tightest tolerance; where the jump on lies far out, against a rigid sphere too."""
-    found, expected = (cycle(path, stiffness) for path in (halfspace.trace(1.0, rtol=rtol), truth))
+def test_jumps_of_a_very_soft_apparatus_hold_their_errors():
+    """Against a tight tolerance and, as the jump on lies far out, a rigid sphere."""
+    stiffness = 1e-12
+    found, expected = (cycle(halfspace.trace(1.0, rtol=rtol), stiffness) for rtol in (1e-2, 1e-8))
     for jump in ("jump_on", "jump_off"):
         for place in ("take_off", "landing"):
             ours, theirs = (getattr(getattr(c, jump), place) for c in (found, expected))
             for quantity in ("approach", "load"):
-                error = getattr(ours, f"{quantity}_error") + getattr(theirs, f"{quantity}_error")
-                difference = abs(getattr(ours, quantity) - getattr(theirs, quantity))
-                assert difference <= error, (jump, place, quantity)
-    lost = found.energy_lost, expected.energy_lost
-    assert abs(lost[0].value - lost[1].value) <= lost[0].error + lost[1].error
-    on = found.jump_on.take_off
-    if stiffness <= 1e-6:
-        gap = np.cbrt(16 * np.pi / 3 / stiffness)
-        assert on.approach == pytest.approx(1 - gap, rel=1e-6)
-        assert on.load == pytest.approx(-8 * np.pi / 3 / gap**2, rel=2e-6, abs=0)
-        assert on.load_error < 2e-5 * abs(on.load) + 1.1e-11
-
-
-@pytest.fixture(scope="module")
-def truth():
-    return halfspace.trace(1.0, rtol=1e-9)
-
-
-def test_an_extended_curve_has_the_same_cycle(stiff_path):
-    """A stiffness whose jump lies on the curve, but so near its beginning that the curve is extended all the same.
-
-    On wider cells, so that it is the same to the accuracy of the lowest rung only.
-    """
-    near = stiff_path.approach[0]
-    stiffness = 16 * np.pi / 3 / (1 - 0.95 * near) ** 3
-    longer = reaching(stiff_path, stiffness).segments
-    assert len(longer) > len(stiff_path.segments)
-    ours, theirs = (jumps(segments, 1 / stiffness) for segments in (longer, stiff_path.segments))
-    for a, b in zip(ours, theirs, strict=True):
-        assert a.take_off.point.observables[0] == pytest.approx(b.take_off.point.observables[0], rel=1e-7)
-        assert a.energy(1 / stiffness) == pytest.approx(b.energy(1 / stiffness), rel=1e-7)
+                assert ours.estimate(quantity).agrees(theirs.estimate(quantity)), (jump, place, quantity)
+    assert found.energy_lost.agrees(expected.energy_lost)
+    on, gap = found.jump_on.take_off, np.cbrt(16 * np.pi / 3 / stiffness)
+    assert on.approach == pytest.approx(1 - gap, rel=1e-6)
+    assert on.load == pytest.approx(-8 * np.pi / 3 / gap**2, rel=2e-6, abs=0)
+    assert on.load_error < 2e-5 * abs(on.load) + 1.1e-11
 
 
 def test_take_offs_are_found_a_fifth_farther_out():
     """On a thin, nearly incompressible layer that slides; the grids around jump_off know its radius alone."""
-    path = halfspace.trace(219.0, body=Layer(0.01, 0.499, "sliding"), rtol=1e-4)
+    path = halfspace.trace(219.0, body=Layer(0.01, 0.499, "sliding"), rtol=1e-3)
     stiff, soft, event = cycle(path).jump_off, cycle(path, 10.0).jump_off, path.event("jump_off")
     for value in ("approach", "load", "contact_radius"):
         ours, own = (found.estimate(value) for found in (stiff.take_off, event))

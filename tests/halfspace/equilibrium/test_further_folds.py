@@ -29,7 +29,7 @@ from halfspace.equilibrium.events import is_fold, usual
 from halfspace.equilibrium.path import Steps
 from halfspace.equilibrium.search import confirmed
 from halfspace.errors import InputError, NotConverged, Unsolved
-from halfspace.laws import LENNARD_JONES, Dlvo, Law, Morse, PowerLaw
+from halfspace.laws import LENNARD_JONES, Dlvo, Law, PowerLaw
 from halfspace.scales import Scales
 
 
@@ -108,7 +108,7 @@ def test_a_rigid_contact_jumps_as_the_closed_form_does(stiffness, names):
 
 
 def test_all_folds_are_events_in_order_and_hold_the_truth(winding):
-    truth = halfspace.trace(2.0, law=LAW, rtol=1e-8)
+    truth = halfspace.trace(2.0, law=LAW, rtol=1e-7)
     names = ["pull_off", "jump_on", "fold_2", "fold_3", "jump_off", "zero_load"]
     assert list(winding.events) == list(truth.events) == names
     assert winding.event("fold_4") is None
@@ -142,7 +142,7 @@ def test_a_solver_that_misses_folds_disagrees():
     assert {row.verdict for row in rows} == {"disagree"}
 
 
-@pytest.mark.parametrize("name", ["jump_on", "jump_on_2", "jump_off", "jump_off_2"])
+@pytest.mark.parametrize("name", ["jump_on", "jump_off_2"])
 def test_relaxation_from_past_a_fold_ends_where_the_jump_lands(winding, name):
     """The motion H' = -(residual), by which the energy falls, with the approach held a little past the fold."""
     jump = cycle(winding).jumps[name]
@@ -180,9 +180,9 @@ def _numbers(event):
     return np.array([event.approach, event.load, event.central_gap])
 
 
-@pytest.mark.parametrize("tabor", [20.0, 100.0])
-def test_a_curve_that_winds_more_has_all_its_folds(tabor):
-    """At tabor 100 one is between two points so far apart that only shorter steps find it."""
+def test_a_curve_that_winds_more_has_all_its_folds():
+    """One is between two points so far apart that only shorter steps find it."""
+    tabor = 100.0
     path = halfspace.trace(tabor)
     fine = trace_charts(
         half_space_charts(Scales(tabor), resolution_for(Scales(tabor), 1e-6)), steps=Steps(longest=0.05)
@@ -203,10 +203,7 @@ def test_a_curve_that_winds_more_has_all_its_folds(tabor):
     ("tabor", "law", "rtol"),
     [
         (300.0, PowerLaw(3.427, 19.84), 1e-3),
-        (300.0, PowerLaw(3.427, 19.84), 1e-4),
-        (100.0, LENNARD_JONES, 1e-2),
         (20.0, LENNARD_JONES, 1e-1),
-        (5.0, Morse(2.0), 1e-3),
         (2.0, LAW, 1e-3),
         (0.5, LENNARD_JONES, 1e-3),
     ],
@@ -273,38 +270,25 @@ def test_a_barrier_holds_the_surfaces_apart_up_to_a_load():
     assert path.event("pull_off").load < 0
 
 
-def test_a_law_of_two_edges_on_a_soft_body_is_refused():
-    with pytest.raises(
-        InputError, match=r"the tension rises again at H = .* times as far, limit: 60; take a smaller tabor"
-    ):
-        halfspace.trace(30.0, law=LAW)
+def test_coarse_elements_name_no_wiggle_a_fold():
+    """Where the last fold but one is next to the birth of contact.
 
-
-@pytest.fixture(scope="module")
-def wound():
-    """At a Tabor parameter at which the last fold but one is next to the birth of contact."""
-    return halfspace.trace(19.829348134526555, rtol=1e-6)
-
-
-@pytest.mark.parametrize("rtol", [1e-1, 1e-2])
-def test_coarse_elements_name_no_wiggle_a_fold(wound, rtol):
-    """The block that follows the contact was a third as large where it took over: a fold was 0.18 eps off."""
-    path = fem_adhesion.trace(Scene(wound.tabor), rtol=rtol)
+    The block that follows the contact was a third as large where it took over: a fold was 0.18 eps off.
+    """
+    tabor = 19.829348134526555
+    path, wound = fem_adhesion.trace(Scene(tabor), rtol=1e-2), halfspace.trace(tabor, rtol=1e-6)
     assert list(path.events) == list(wound.events)
     for name in ("fold_2", "fold_3", "fold_4", "fold_5"):
-        ours, truth = path.events[name], wound.events[name]
         for quantity in ("approach", "load", "central_gap"):
-            error = getattr(ours, f"{quantity}_error") + getattr(truth, f"{quantity}_error")
-            assert abs(getattr(ours, quantity) - getattr(truth, quantity)) <= error
+            assert path.events[name].estimate(quantity).agrees(wound.events[name].estimate(quantity))
 
 
-@pytest.mark.parametrize("lost", [0, 1])
-def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch, lost):
+def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch):
     """Folds come in pairs: with one the other is in doubt as well."""
     ups = iter(range(9))
 
     def on_finer_grids(traced, solve, known):
-        return confirmed(traced, lambda f: Unsolved("not found again") if next(ups) == lost else solve(f), known)
+        return confirmed(traced, lambda f: Unsolved("not found again") if next(ups) == 1 else solve(f), known)
 
     monkeypatch.setattr(refinement, "confirmed", on_finer_grids)
     path = halfspace.trace(5.0, rtol=1e-3)

@@ -9,13 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import halfspace
 from fem_adhesion.elasticity.elimination import factor, inverses
 from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.conditions import ZERO_LOAD, locate
 from halfspace.equilibrium.contact import LOAD
-from halfspace.equilibrium.devices import cycle, jumps
+from halfspace.equilibrium.devices import jumps
 from halfspace.equilibrium.path import Metric
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, NotConverged
@@ -104,17 +103,3 @@ def test_singular_matrices_are_a_solvers_end():
         inverses(np.zeros((1, 2, 2)))
     with pytest.raises(NotConverged, match="stiffness is singular; hold the body"):
         factor(np.zeros((2, 2)))
-
-
-@given(
-    tabor=st.floats(-2, 1.2).map(lambda e: 10.0**e),
-    rtol=st.floats(-3, -1).map(lambda e: 10.0**e),
-    to_load=st.floats(-6, 2).map(lambda e: 10.0**e),
-    stiffness=st.floats(-9, 3).map(lambda e: 10.0**e),
-)
-@settings(max_examples=12, deadline=None, derandomize=True, database=None)
-def test_odd_inputs_end_in_numbers_or_in_a_sentence(tabor, rtol, to_load, stiffness):
-    path, said = ended(lambda: halfspace.trace(tabor, rtol=rtol, to_load=to_load))
-    assert path or "; " in said
-    _, said = ended(lambda: cycle(path, stiffness)) if path else (None, "")
-    assert not said or "; " in said

@@ -16,7 +16,7 @@ from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP
 from halfspace.equilibrium.path import correct
 from halfspace.equilibrium.search import states
 from halfspace.errors import InputError
-from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Morse, PowerLaw
+from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Morse
 from halfspace.profiles import Hyperboloid, Power, Sphere
 
 
@@ -41,14 +41,12 @@ def test_a_state_has_the_value_asked_for_in_the_shape_it_was_asked_in(paths):
     assert gaps.contact_radius[1] > gaps.contact_radius_error[1] > 0
 
 
-@pytest.mark.parametrize("law", [Exponential(0.36, 30.0), LENNARD_JONES], ids=str)
-@pytest.mark.parametrize("load", [20.0, 0.0, -3.0])
-def test_a_small_load_of_large_tensions_has_the_value_asked_for_within_its_error(law, load):
-    """On the first 1e8 R dgamma of tension and pressure cancel: 20 was met to 3e-6, within 2e-10 by the load alone."""
-    path = halfspace.trace(1e-6, law=law, profile=Hyperboloid(0.5614), rtol=1e-5)
-    branches = path.branches("load")
-    state = path.at(load=load, branch=list(branches)[-1])
-    assert abs(state.load - load) <= state.load_error <= 1e-10 * (1 + np.abs(path.load).max())
+def test_a_small_load_of_large_tensions_has_the_value_asked_for_within_its_error():
+    """Of tension and pressure 1e8 R dgamma cancel: 20 was met to 3e-6, within 2e-10 by the load alone."""
+    path = halfspace.trace(1e-6, law=Exponential(0.36, 30.0), profile=Hyperboloid(0.5614), rtol=1e-5)
+    for load in (20.0, -3.0):
+        state = path.at(load=load, branch=list(path.branches("load"))[-1])
+        assert abs(state.load - load) <= state.load_error <= 1e-10 * (1 + np.abs(path.load).max())
 
 
 def test_events_are_states_of_the_curve(paths):
@@ -66,6 +64,9 @@ def test_events_are_states_of_the_curve(paths):
 
 def test_branches_are_named_by_what_lies_between_folds(paths):
     assert list(paths[0.5].branches("approach")) == ["whole"]
+    assert (
+        len({paths[0.5].at(approach=-0.5, branch=name).load for name in (None, "whole", "separated", "contact")}) == 1
+    )
     assert list(paths[2.0].branches("approach")) == ["separated", "unstable", "contact"]
     winding = ["separated", "unstable 1", "unstable 2", "unstable 3", "contact"]
     assert list(paths[5.0].branches("approach")) == winding
@@ -81,11 +82,6 @@ def test_every_crossing_of_a_winding_curve_is_found(paths):
     gaps = [state.central_gap for state in states]
     assert gaps == sorted(gaps, reverse=True)
     assert len({round(gap, 3) for gap in gaps}) == 5
-
-
-def test_either_end_of_a_curve_that_does_not_fold_means_the_whole(paths):
-    names = (None, "whole", "separated", "contact")
-    assert len({paths[0.5].at(approach=-0.5, branch=name).load for name in names}) == 1
 
 
 @pytest.mark.parametrize(
@@ -148,49 +144,31 @@ def test_a_state_where_one_grid_hands_over_to_the_next_is_counted_once(paths, co
 # --- their errors ---
 
 
-def _plane_differences(path, truth):
-    """Of each number of each point, in the plane across the path there: whether far off, estimate and true error."""
-    errors = path.finest_curve.errors
+@pytest.mark.parametrize(
+    ("tabor", "rtol", "parts"),
+    [
+        # On a flat tip the grid around the edge rippled, and ended branches, before the contact was as wide as that.
+        (0.01, 1e-4, {"profile": Power(10.0)}),
+        # The radius at the first point in contact hardly changes by accident, as none is beside it on its grid.
+        (4.0, 1e-5, {"law": LENNARD_JONES}),
+    ],
+    ids=["flat tip", "first point in contact"],
+)
+def test_points_of_a_curve_are_within_their_errors(tabor, rtol, parts):
+    """In the plane across the path, up to gaps from which on the surfaces attract each other from afar alone."""
+    path, truth = (halfspace.trace(tabor, **parts, rtol=part) for part in (rtol, 1e-8))
     points = [(segment.problem, point) for segment in path.finest_curve.segments for point in segment.points]
-    for error, (problem, point) in zip(errors, points, strict=True):
+    told, off = [], []
+    for errors, (problem, point) in zip(path.finest_curve.errors, points, strict=True):
         exact = placed(truth.finest.everywhere, Located(FOLD, problem, point, 1.0)).point.observables
-        off = np.abs(exact - point.observables)
-        for k in np.flatnonzero(np.isfinite(off)):
-            yield exact[CENTRAL_GAP] > FAR, (error[k], off[k], 1e-11 * (1 + abs(exact[k])))
-
-
-FAR = 3.0  # eps, of a central gap from which on the surfaces attract each other from afar alone
-
-
-def _judge(numbers, within=0.99, close=0.5):
-    estimate, off, known = np.array(list(numbers)).T
-    assert np.mean(off <= estimate + known) >= within
-    assert np.mean(estimate <= 100 * np.maximum(off, np.maximum(known, 1e-11))) >= close
-
-
-def test_points_of_a_curve_on_a_stiff_coating_are_within_their_errors():
-    """By operators at fewer radii the curve rippled so that no plane across it met that of the next grid."""
-    path = halfspace.trace(4.0, rtol=1e-4, profile=Sphere(20.0, 1.0), body=Coated(0.5, 100.0), to_load=0.5)
-    assert path.load_error.max() < 2e-3 * abs(path.event("pull_off").load)
-
-
-@pytest.mark.parametrize(("tabor", "exponent", "rtol"), [(0.01, 10.0, 1e-4), (0.1, 8.0, 1e-5)])
-def test_a_contact_that_is_there_at_once_stays_on_the_axis_grid_until_the_next_carries_it(tabor, exponent, rtol):
-    """On a flat tip the one around its edge rippled, and ended branches, before the contact was as wide as that.
-
-    Errors of loads are a thousandth of what they were, and for half the numbers over a hundred times the true ones.
-    """
-    path, truth = (halfspace.trace(tabor, profile=Power(exponent), rtol=part) for part in (rtol, 1e-8))
-    assert list(path.branches("load")) == ["separated", "contact"]
-    assert path.load_error.max() < rtol * abs(path.event("pull_off").load)
-    _judge((number for far, number in _plane_differences(path, truth) if not far), within=1.0, close=0.5)
-
-
-@pytest.mark.parametrize(("tabor", "rtol", "law"), [(0.3, 1e-4, PowerLaw(2.2, 9.0)), (4.0, 1e-5, LENNARD_JONES)])
-def test_the_first_point_in_contact_is_within_its_errors(tabor, rtol, law):
-    """By accident its radius hardly changes: it was 2.6 and 3.8 times outside, as none is beside it on its grid."""
-    path, truth = (halfspace.trace(tabor, law=law, rtol=part) for part in (rtol, 1e-8))
-    _judge((number for far, number in _plane_differences(path, truth) if not far), within=1.0)
+        here = np.isfinite(exact - point.observables) & (exact[CENTRAL_GAP] < 3.0)
+        told += [*(errors + 1e-11 * (1 + np.abs(exact)))[here]]
+        off += [*np.abs(exact - point.observables)[here]]
+    assert (np.array(off) <= told).all()
+    assert np.mean(np.array(told) <= 100 * np.maximum(off, 1e-11)) >= 0.5
+    if tabor < 1:
+        assert list(path.branches("load")) == ["separated", "contact"]
+        assert path.load_error.max() < rtol * abs(path.event("pull_off").load)
 
 
 def test_states_on_both_sides_of_a_fold_are_found():
@@ -223,8 +201,8 @@ def test_next_to_a_fold_the_load_errs_by_the_root_of_what_the_approach_does():
 
 
 def test_a_curve_takes_any_number_of_points(paths):
-    path = paths[5.0].resampled(150)
-    assert path.approach.shape == path.load_error.shape == path.stable.shape == (150,)
+    path = paths[5.0].resampled(60)
+    assert path.approach.shape == path.load_error.shape == path.stable.shape == (60,)
     steps = np.diff([point.arclength for segment in path.segments for point in segment.points])
     np.testing.assert_allclose(steps, steps.mean(), rtol=1e-9)
     metric = path.metric
@@ -235,14 +213,14 @@ def test_a_curve_takes_any_number_of_points(paths):
     )
 
 
-@pytest.mark.parametrize("count", [1, 2.5, True, 10_001])
+@pytest.mark.parametrize("count", [1, 2.5, 10_001])
 def test_no_curve_has_less_than_two_ends_or_more_points_than_are_waited_for(paths, count):
     with pytest.raises(InputError, match=f"points = {count} is outside 2 <= points"):
         paths[2.0].resampled(count)
 
 
 def test_the_command_writes_as_many_points_each_with_its_error(tmp_path):
-    files, count = (tmp_path / "curve.csv", tmp_path / "curve.json"), 60
+    files, count = (tmp_path / "curve.csv", tmp_path / "curve.json"), 12
     written = f"--points {count} --csv {files[0]} --json {files[1]}"
     assert cli.main(["curve", *f"--tabor 2 --rtol 1e-3 {written}".split()]) == 0
     curve = json.loads(files[1].read_text())["solutions"]["half-space"]["curve"]

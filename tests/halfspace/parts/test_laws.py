@@ -75,11 +75,15 @@ def test_the_default_is_lennard_jones():
 
 @dataclass(frozen=True)
 class Yukawa(Law):
-    """A law of one's own: screened attraction and core, c (e^(-H) - e^(-3 H)), 1/c = 1 - 1/3."""
+    """A law of one's own: screened attraction and core, c (e^(-H) - e^(-3 H)), 1/c = 1 - 1/3, and ways to be wrong.
+
+    A dent of the potential about H = 0.17 lies between the gaps at which laws are looked at.
+    """
 
     work: float = 1.0
     slip: float = 0.0
     drift: float = 0.0
+    dent: float = 0.0
 
     def pressure(self, gap, tabor):
         """P."""
@@ -91,7 +95,8 @@ class Yukawa(Law):
 
     def energy(self, gap, tabor):
         """Phi."""
-        return 1.5 * self.work * tabor * (np.exp(-3 * gap) / 3 - np.exp(-gap))
+        dented = 1 - self.dent * np.exp(-(((gap - 0.17) / 0.03) ** 2))
+        return 1.5 * self.work * tabor * (np.exp(-3 * gap) / 3 - np.exp(-gap)) * dented
 
     def room(self, gap):
         """No core."""
@@ -99,25 +104,23 @@ class Yukawa(Law):
 
 
 @dataclass(frozen=True)
-class Blunt(Endless):
-    """A profile of one's own: a paraboloid that grows as a quartic further out."""
+class Own(Endless):
+    """A profile of one's own: a paraboloid that is lifted, bends as a quartic, or tells another slope."""
+
+    lift: float = 0.0
+    bend: float = 0.0
+    steeper: float = 1.0
 
     def height(self, radii):
-        """Return z."""
-        return radii**2 / 2 + radii**4 / 20
+        """In beta^2/R."""
+        return self.lift + radii**2 / 2 - self.bend * radii**4
 
     def slope(self, radii):
-        """Return dz/du."""
-        return radii + radii**3 / 5
+        """Its derivative."""
+        return self.steeper * radii - 4 * self.bend * radii**3
 
 
-@dataclass(frozen=True)
-class Slack(Yukawa):
-    """One whose potential is wrong between the gaps at which laws are looked at."""
-
-    def energy(self, gap, tabor):
-        """Phi, 2 % too small about H = 0.17."""
-        return super().energy(gap, tabor) * (1 - 0.02 * np.exp(-(((gap - 0.17) / 0.03) ** 2)))
+BLUNT = Own(bend=-0.05)
 
 
 def by(law):
@@ -142,7 +145,7 @@ def by(law):
         (by(Yukawa(work=-1)), "the largest tension is 1e-09 dgamma/eps, limit: above 0; let the surfaces attract"),
         (by(Yukawa(slip=0.01)), "the slope is off by 0.0099 from the pressure's, limit: 0.0001; mend either"),
         (by(Yukawa(drift=-0.01)), "the pressure at H = 0 is -0.01 dgamma/eps, limit: 0; move its gaps"),
-        (by(Slack()), "from the energy's derivative"),
+        (by(Yukawa(dent=0.02)), "from the energy's derivative"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
@@ -185,21 +188,19 @@ def test_other_laws_and_profiles_hit_the_references(law, profile, solve, rtol):
         assert off[1] <= min(rtol * abs(event.load), event.load_error + known[1])
 
 
-def assert_same(ours, theirs, approaches=1.0, loads=1.0):
-    """Compare the events of two curves within their errors, one's times factors."""
+def assert_same(ours, theirs, approaches=1.0):
+    """Compare the events of two curves within their errors, one's approaches times a factor."""
     assert ours.events.keys() == theirs.events.keys()
     for name, event in ours.events.items():
         other = theirs.event(name)
-        error = event.approach_error + approaches * other.approach_error
-        assert abs(event.approach - approaches * other.approach) <= error
-        assert abs(event.load - loads * other.load) <= event.load_error + loads * other.load_error
+        assert event.estimate("approach").agrees(other.estimate("approach") * approaches)
+        assert event.estimate("load").agrees(other.estimate("load"))
 
 
-@pytest.mark.parametrize(("k", "tabor"), [(0.1, 3.0), (10.0, 1.0)])
-def test_morse_knows_k_and_tabor_by_their_product_alone(k, tabor):
+def test_morse_knows_k_and_tabor_by_their_product_alone():
     """Gaps in ranges of the potential in the place of eps: neither eps nor k is in the equations any more."""
-    ours, unit = halfspace.trace(tabor, law=Morse(k)), halfspace.trace(k * tabor, law=Morse(1))
-    assert_same(ours, unit, approaches=1 / k)
+    ours, unit = halfspace.trace(3.0, law=Morse(0.1)), halfspace.trace(0.3, law=Morse(1))
+    assert_same(ours, unit, approaches=10.0)
 
 
 def test_a_quadratic_power_is_a_paraboloid():
@@ -212,9 +213,7 @@ def test_a_quadratic_power_is_a_paraboloid():
 @pytest.mark.parametrize(
     ("law", "profile"),
     [
-        (PowerLaw(2.5, 9.5), PARABOLOID),
         (Dlvo(0.3, 1.0), PARABOLOID),
-        (LENNARD_JONES, Power(1.5)),
         (LENNARD_JONES, RoundedPunch(1)),
         (PowerLaw(2.5, 9.5), Hyperboloid(0.3)),
     ],
@@ -237,15 +236,14 @@ def test_a_rigid_profile_adheres_with_the_integral_of_the_law(law, profile):
         assert float(state.load) == pytest.approx(load(float(state.approach)), rel=1e-6)
 
 
-@pytest.mark.parametrize("parts", [{"law": PowerLaw(2.5, 9.5)}, {"profile": Power(4)}], ids=str)
-def test_a_soft_contact_is_jkrs_by_any_law_on_any_profile(parts):
+@pytest.mark.parametrize(("law", "profile"), [(PowerLaw(2.5, 9.5), PARABOLOID), (LENNARD_JONES, Power(4))], ids=str)
+def test_a_soft_contact_is_jkrs_by_any_law_on_any_profile(law, profile):
     """Pull-off under dead load and least approach, as the Tabor parameter grows, with the order seen at three."""
-    profile = parts.get("profile", PARABOLOID)
     least = minimize_scalar(lambda a: jkr_load(profile, a), bounds=(0.1, 4), method="bounded", options={"xatol": 1e-10})
     nearest = minimize_scalar(lambda a: jkr_approach(profile, a), bounds=(0.05, 4), method="bounded")
     off = []
     for tabor in (8.0, 16.0, 32.0):
-        path = halfspace.trace(tabor, **parts, rtol=1e-5)
+        path = halfspace.trace(tabor, law=law, profile=profile, rtol=1e-5)
         fold = path.event("jump_off").approach / tabor
         off.append([path.event("pull_off").load / least.fun - 1, fold / nearest.fun - 1])
     first, second, third = np.array(off)
@@ -267,31 +265,22 @@ def test_dugdales_law_tends_to_maugiss_as_its_steps_narrow():
     np.testing.assert_allclose(off[1:] / off[:-1], 2 ** (-1 / 3), rtol=0.03)
 
 
-def assert_same_state(ours, truth):
-    for name in ("approach", "load", "central_gap"):
-        budget = getattr(ours, f"{name}_error") + getattr(truth, f"{name}_error")
-        assert abs(getattr(ours, name) - getattr(truth, name)) <= budget
-        assert budget < 1e-3
-
-
-@pytest.mark.parametrize(
-    ("profile", "tabor"), [(PARABOLOID, 1.0), (Power(1.5), 1.0), (Power(3.0), 0.3)], ids=["step", "tip", "flat tip"]
-)
+@pytest.mark.parametrize(("profile", "tabor"), [(PARABOLOID, 1.0), (Power(1.5), 1.0)], ids=["step", "tip"])
 def test_states_are_known_along_a_curve_of_many_charts(profile, tabor):
     """A stretch that was traced on one chart is solved for on one; cells towards a tip depend on the nodes in each."""
-    path, fine = (halfspace.trace(tabor, law=Dugdale(0.1), profile=profile, rtol=rtol) for rtol in (1e-4, 1e-6))
+    path, fine = (halfspace.trace(tabor, law=Dugdale(0.1), profile=profile, rtol=rtol) for rtol in (1e-4, 1e-5))
     folds = [name for name in path.events if name.startswith(("jump", "fold"))]
     assert len(path.branches("approach")) == len(folds) + 1
     for gap in (0.1, 0.7, 2.0):
-        assert_same_state(path.at(central_gap=gap), fine.at(central_gap=gap))
+        ours, truth = (one.at(central_gap=gap) for one in (path, fine))
+        for name in ("approach", "load"):
+            budget = getattr(ours, f"{name}_error") + getattr(truth, f"{name}_error")
+            assert abs(getattr(ours, name) - getattr(truth, name)) <= budget < 1e-3
 
 
-@pytest.mark.parametrize(
-    "parts", [{"law": Exponential(3)}, {"law": PowerLaw(2.1, 2.5)}, {"profile": Hyperboloid(1)}], ids=str
-)
-def test_the_energys_derivative_is_the_load(parts):
+def test_the_energys_derivative_is_the_load():
     """Along the contact branch, by differences of the energy over the approach on one grid."""
-    segment = halfspace.trace(0.5, **parts, rtol=1e-8).segments[-1]
+    segment = halfspace.trace(0.5, law=PowerLaw(2.1, 2.5), rtol=1e-8).segments[-1]
     problem, x, h = segment.problem, segment.points[-3].x, 1e-3
     states = [newton.solve(problem, x, newton.approach(x[-2] + h * n)).x for n in (-2, -1, 1, 2)]
     before, less, more, after = (problem.energy(state) for state in states)
@@ -325,7 +314,7 @@ def test_contacts_of_a_softer_body_are_in_its_own_lengths(softness):
 
 
 @pytest.mark.parametrize(
-    "profile", [Paraboloid(), Power(1.5), Power(7), Hyperboloid(0.3), RoundedPunch(2), Blunt()], ids=str
+    "profile", [Paraboloid(), Power(1.5), Power(7), Hyperboloid(0.3), RoundedPunch(2), BLUNT], ids=str
 )
 def test_a_profiles_slope_is_that_of_its_height(profile):
     r = np.geomspace(0.01, 20, 40)
@@ -338,12 +327,10 @@ def test_a_profiles_slope_is_that_of_its_height(profile):
 @pytest.mark.parametrize(
     ("tabor", "parts"),
     [
-        (1.0, {"law": Yukawa(), "profile": Blunt()}),
+        (1.0, {"law": Yukawa(), "profile": BLUNT}),
         (0.3, {"law": Exponential(3), "profile": Hyperboloid(0.3)}),
-        (1.0, {"profile": RoundedPunch(2)}),
-        (0.5, {"law": Dlvo(0.3, 1.0), "profile": Power(4)}),
     ],
-    ids=str,
+    ids=["own", "exponential"],
 )
 def test_both_solvers_agree_on_any_law_and_profile(tabor, parts):
     """Of one's own, too: nothing but a class with its formulas."""
@@ -351,23 +338,6 @@ def test_both_solvers_agree_on_any_law_and_profile(tabor, parts):
     assert not ours.missed
     assert not theirs.missed
     assert_same(ours, theirs)
-
-
-@dataclass(frozen=True)
-class Own(Endless):
-    """A paraboloid that is lifted, bends down, or has another slope."""
-
-    lift: float = 0.0
-    bend: float = 0.0
-    steeper: float = 1.0
-
-    def height(self, radii):
-        """In beta^2/R."""
-        return self.lift + radii**2 / 2 - self.bend * radii**4
-
-    def slope(self, radii):
-        """Its derivative."""
-        return self.steeper * radii - 4 * self.bend * radii**3
 
 
 @pytest.mark.parametrize(
@@ -379,7 +349,6 @@ class Own(Endless):
     ],
 )
 def test_a_profile_of_ones_own_is_checked_as_laws_are(wrong, message):
-    assert halfspace.trace(1.0, profile=Own(), rtol=1e-2).met
     for ask in (lambda: halfspace.trace(1.0, profile=Own(**wrong)), lambda: Scene(1.0, profile=Own(**wrong))):
         with pytest.raises(InputError, match=message):
             ask()

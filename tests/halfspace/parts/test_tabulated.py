@@ -114,7 +114,7 @@ def test_a_tip_with_its_columns_exchanged_is_refused(tmp_path):
                 profiles.Tabulated(written(tmp_path / "tip.csv", rows, r), 100.0)
 
 
-@pytest.mark.parametrize("nearly", [0.0, 1e-17, -1e-17])
+@pytest.mark.parametrize("nearly", [0.0, -1e-17])
 def test_a_row_without_tension_is_equilibrium(nearly, tmp_path):
     h = EPS * np.append(np.linspace(0.8, 0.99, 20), np.geomspace(1.0, 30, 600))
     tension = np.where(h == EPS, nearly, lennard_jones(h))
@@ -122,8 +122,6 @@ def test_a_row_without_tension_is_equilibrium(nearly, tmp_path):
     assert law.spacing == pytest.approx(EPS, rel=1e-14)
     metres = laws.Tabulated(written(tmp_path / "law.csv", h * 1e-9, tension))
     assert metres.spacing == pytest.approx(EPS * 1e-9, rel=1e-14, abs=0)
-    ours, known = (halfspace.trace(0.5, law=one, rtol=1e-4).event("pull_off") for one in (law, LENNARD_JONES))
-    assert abs(ours.load - known.load) < ours.load_error + known.load_error + 1e-4
 
 
 def test_a_table_that_ends_with_zeros_ends_at_the_first_of_them(tmp_path):
@@ -139,7 +137,7 @@ def test_a_table_that_ends_with_zeros_ends_at_the_first_of_them(tmp_path):
     assert law.decay == np.inf
     once = laws.Tabulated(written(tmp_path / "once.csv", h[h <= end], tension[h <= end]))
     np.testing.assert_array_equal(once.pressure(H, 1.0), law.pressure(H, 1.0))
-    rough, fine = (halfspace.trace(0.5, law=law, rtol=rtol) for rtol in (1e-2, 1e-6))
+    rough, fine = (halfspace.trace(0.5, law=law, rtol=rtol) for rtol in (1e-2, 1e-5))
     assert rough.met
     for name, event in fine.events.items():
         assert abs(rough.event(name).load - event.load) < rough.event(name).load_error + event.load_error
@@ -150,12 +148,8 @@ def test_a_narrow_valley_is_resolved_or_refused_before_any_work(tmp_path):
     h = np.append(np.linspace(0.753, 4, 131), np.geomspace(4.05, 60, 60))
     tension = (h**-3 - h**-9) * (1 - 0.95 * np.exp(-(((h - 1.7) / 0.25) ** 2)))
     law = laws.Tabulated(written(tmp_path / "law.csv", h, tension))
-    assert list(halfspace.trace(2.0, law=law, rtol=1e-2).branches("load")) == [
-        "separated",
-        "unstable 1",
-        "unstable 2",
-        "contact",
-    ]
+    events = halfspace.trace(2.0, law=law, rtol=1e-1).events
+    assert list(events) == ["pull_off", "jump_on", "fold_2", "fold_3", "jump_off", "zero_load"]
     with pytest.raises(InputError, match=r"rises again at H = 1.07.* limit: 60; take a smaller tabor than 3"):
         halfspace.trace(3.0, law=law, rtol=1e-2)
 
@@ -165,7 +159,7 @@ def test_estimates_hold_where_the_third_derivative_leaps(tmp_path):
     h = np.append(np.linspace(0.753, 4, 131), np.geomspace(4.05, 60, 60))
     tension = (h**-3 - h**-9) * (1 - 0.95 * np.exp(-(((h - 2.5) / 0.7) ** 2)))
     law = laws.Tabulated(written(tmp_path / "law.csv", h, tension))
-    path, truth = (halfspace.trace(3.0, law=law, rtol=rtol) for rtol in (1e-5, 1e-9))
+    path, truth = (halfspace.trace(3.0, law=law, rtol=rtol) for rtol in (1e-5, 1e-8))
     for name, event in path.events.items():
         for quantity in ("approach", "load"):
             ours, best = (one.estimate(quantity) for one in (event, truth.event(name)))
@@ -202,19 +196,13 @@ H = EPS * np.geomspace(0.7, 30, 300)
         (H, lennard_jones(H) * np.cos(H), "the tension changes sign again, limit: once"),
         (H, -abs(lennard_jones(H)), "the largest tension is -"),
         (H[::-1], lennard_jones(H), "line 3: the first column goes from 4.95 to 4.88818, limit: ascending"),
-        (H[:5], lennard_jones(H)[:5], "has 5 rows, limit: 12"),
         (H - H[0], lennard_jones(H), "the first gap is 0, limit: above 0"),
-        (H * np.nan, lennard_jones(H), "law.csv, line 2: 'nan,-"),
         (H, np.where(H > EPS, lennard_jones(H), np.nan), "law.csv, line 2: '0.1155,nan', limit: two finite numbers"),
         (H, -lennard_jones(H), "begin in the core, where the surfaces repel and the tension is negative"),
     ],
 )
-def test_what_is_no_law_is_refused_in_one_line(x, y, message, tmp_path, capsys):
-    path = written(tmp_path / "law.csv", x, y)
-    assert cli.main(["curve", "--tabor", "1", "--law", f"tabulated:{path}"]) == 2
-    err = capsys.readouterr().err
-    assert message in err
-    assert err.count("\n") == 1
+def test_what_is_no_law_is_refused_in_one_line(x, y, message, tmp_path, refused):
+    refused(f"curve --tabor 1 --law tabulated:{written(tmp_path / 'law.csv', x, y)}", words=message)
 
 
 ROWS = "".join(f"{r},{r**2 / 8}\n" for r in range(20))
@@ -244,38 +232,30 @@ def test_a_header_may_be_of_any_letters(encoding, tmp_path):
     assert profiles.Tabulated(tmp_path / "tip.csv", 100.0).radius == pytest.approx(4.0)
 
 
-def test_a_material_of_another_radius_than_its_tip_is_refused(tmp_path, capsys):
-    r = np.linspace(0, 15e-9, 100)
-    tip = str(written(tmp_path / "tip.csv", r, r**2 / 40e-9))
-    material = ["--modulus", "70GPa", "--poisson", "0.2", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"]
-    curve = ["curve", *material, "--profile", f"tabulated:{tip}", "--rtol", "1e-2"]
-    assert cli.main([*curve, "--radius", "20.1nm"]) == 0
+R_IN_M = np.linspace(0, 15e-9, 100)
+CURVE = "curve --modulus 70GPa --poisson 0.2 --work-of-adhesion 50mJ/m^2 --spacing 0.3nm --rtol 1e-2"
+
+
+def test_a_material_has_the_radius_of_its_tip(tmp_path, capsys, refused):
+    tip = f"--profile tabulated:{written(tmp_path / 'tip.csv', R_IN_M, R_IN_M**2 / 40e-9)}"
+    words = "radius = 20.3 nm under a tip whose apex has 2e-08 in its table's unit, limit: the same to 1 %"
+    refused(CURVE, tip, "--radius 20.3nm", words=words)
+    assert cli.main(f"{CURVE} {tip} --radius 20.1nm".split()) == 0
     assert "apex radius 2e-08" in capsys.readouterr().out
-    assert cli.main([*curve, "--radius", "20.3nm"]) == 2
-    err = capsys.readouterr().err
-    assert "radius = 20.3 nm under a tip whose apex has 2e-08 in its table's unit, limit: the same to 1 %" in err
-    assert err.count("\n") == 1
 
 
-def test_a_tip_in_another_unit_is_refused_with_the_factor(tmp_path, capsys):
-    """In nm, say: with that factor in both columns the same command runs."""
-    unit, factor = 1e-9, "1e-09"
-    r, material = np.linspace(0, 15e-9, 100), ["--modulus", "70GPa", "--poisson", "0.2", "--radius", "20nm"]
-    curve = ["curve", *material, "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"]
-    tip = written(tmp_path / "tip.csv", r / unit, r**2 / 40e-9 / unit)
-    assert cli.main([*curve, "--profile", f"tabulated:{tip}", "--rtol", "1e-2"]) == 2
-    said = capsys.readouterr().err
-    assert f"the table in m; multiply both columns by {factor}" in said
+def test_a_tip_in_another_unit_is_refused_with_the_factor(tmp_path, refused):
+    """In nm, say: with that in its header the same command runs."""
+    file = written(tmp_path / "tip.csv", R_IN_M * 1e9, R_IN_M**2 / 40e-9 * 1e9)
+    curve = CURVE, "--radius 20nm", f"--profile tabulated:{file}"
+    said = refused(*curve, words="the table in m; multiply both columns by 1e-09")
     assert "--radius" not in said
-    by_header = tmp_path / "headed.csv"
-    by_header.write_text("r_nm,z_nm\n" + tip.read_text())
-    tip = written(tmp_path / "tip.csv", r / unit * float(factor), r**2 / 40e-9 / unit * float(factor))
-    for table in (tip, by_header):
-        assert cli.main([*curve, "--profile", f"tabulated:{table}", "--rtol", "1e-2"]) == 0
+    rows = file.read_text()
     for header, units in (("r_nm,z_um", "nm and um"), ("r_A,z_A", "A"), ("r_nm,z_furlong", "nm and furlong")):
-        by_header.write_text(f"{header}\n" + tip.read_text())
-        assert cli.main([*curve, "--profile", f"tabulated:{by_header}"]) == 2
-        assert f"has {units} in its header, limit: one unit" in capsys.readouterr().err
+        file.write_text(f"{header}\n{rows}")
+        refused(*curve, words=f"has {units} in its header, limit: one unit")
+    file.write_text(f"r_nm,z_nm\n{rows}")
+    assert cli.main(" ".join(curve).split()) == 0
 
 
 def test_a_tip_that_turns_back_is_refused(tmp_path):
