@@ -39,16 +39,11 @@ BEAD = {"radius": 50e-6, "modulus": 2e6, "poisson": 0.49, "work_of_adhesion": 0.
     [
         ("100nm", "radius", 1e-7),
         ("0.1 µm", "radius", 1e-7),
-        ("1e-7 m", "counter_radius", 1e-7),
         ("3 Å", "spacing", 3e-10),
-        ("70GPa", "modulus", 7e10),
         ("70 kN/mm^2", "counter_modulus", 7e10),
-        ("0.1J/m^2", "work_of_adhesion", 0.1),
         ("50 mN/m", "work_of_adhesion", 0.05),
         ("50 dyn/cm", "work_of_adhesion", 0.05),
-        ("0.2 N m^-1", "stiffness", 0.2),
         ("200 pN/nm", "stiffness", 0.2),
-        ("65zJ", "hamaker", 6.5e-20),
         ("6.5e-13 erg", "hamaker", 6.5e-20),
     ],
 )
@@ -66,10 +61,7 @@ def test_quantities_are_read_into_si(text, name, value):
         ("-3nm", "spacing", "spacing = -3nm is outside 0 < spacing < inf; write it as 0.143nm"),
         ("1e400nm", "radius", "radius = 1e400nm is outside"),
         ("3 kg", "spacing", "spacing = 3 kg has a unit of the wrong kind, limit: a multiple of m; as in 0.143nm"),
-        ("3 degC", "spacing", "wrong kind"),
-        ("70 GPa", "work_of_adhesion", "a multiple of J/m"),
         ("3 bananas", "spacing", "spacing = 3 bananas has the unknown unit 'bananas'; write it as 0.143nm"),
-        ("3 nm)", "spacing", "unknown unit"),
         ("3 2**9**9**9 m", "spacing", "unknown unit"),
     ],
 )
@@ -83,14 +75,12 @@ def test_what_is_no_quantity_is_refused_in_one_line(text, name, message):
     ("change", "message"),
     [
         ({"radius": -1e-9}, "curvature 1/R1 . 1/R2 outside 0 < 1/R"),
-        ({"radius": math.nan}, "outside 0 < 1/R"),
         ({"modulus": 0.0}, "young = 0 Pa is outside 0 < young < inf"),
         ({"poisson": 0.5}, "poisson = 0.5 is outside 0 <= poisson < 0.5; take 0.4999 for rubber"),
-        ({"work_of_adhesion": -0.1}, "work_of_adhesion = -0.1 J/m.2 is outside"),
         ({"spacing": math.inf}, "spacing = inf m is outside"),
         ({"stiffness": 0.0}, "stiffness = 0 N/m is outside 0 < stiffness; leave it out for fixed grips"),
         ({"counter_modulus": 1e9}, "counter_poisson = None, limit: with both or none of"),
-        ({"counter_modulus": 1e9, "counter_poisson": 0.7}, "poisson = 0.7 is outside"),
+        ({"counter_modulus": 1e9, "counter_poisson": 0.5}, "poisson = 0.5 is outside"),
     ],
 )
 def test_a_contact_that_cannot_be_is_refused(change, message):
@@ -342,6 +332,7 @@ def _check_record(data, assessment):
 
 def test_the_command_prints_and_writes_what_it_computed(said):
     assert said.code == 0
+    assert f"written: {said.json} {said.plot}\n" in said.text
     _check_table(said.text, said.assessment)
     _check_record(said.record, said.assessment)
     assert said.record["input"]["grip"] == "sliding"
@@ -354,7 +345,7 @@ def test_the_command_prints_and_writes_what_it_computed(said):
         assert line in said.text.replace("\n", " ")
 
 
-@pytest.mark.parametrize("width", [150, 80, 45, 30])
+@pytest.mark.parametrize("width", [80, 30])
 def test_every_number_unit_and_sentence_is_whole_at_any_width(silica, bead, width):
     for assessment in (silica, bead):
         text = _shown(assessment, width)
@@ -483,7 +474,7 @@ def test_theories_are_not_judged_by_another_contact_radius(silica):
 
 
 @pytest.mark.parametrize(
-    ("tabor", "word"), [(1e-9, "rigid:"), (0.0999, "rigid:"), (0.1, "transition"), (5.0, "transition"), (5.1, "soft:")]
+    ("tabor", "word"), [(0.0999, "rigid:"), (0.1, "transition"), (5.0, "transition"), (5.1, "soft:")]
 )
 def test_the_regime_is_that_of_its_limits(tabor, word):
     assert regime(tabor).startswith(word)
@@ -537,11 +528,6 @@ def test_a_verdict_heeds_the_cautions_that_pass_a_limit(capsys):
 GLASS = ("--radius", "100nm", "--modulus", "72GPa", "--poisson", "0.17", "--work-of-adhesion", "0.063J/m^2")
 
 
-@pytest.mark.parametrize("error", [math.inf, math.nan])
-def test_a_number_whose_error_is_not_known_is_shown_as_such(error):
-    assert with_error(Quantity(-1.2345678e-9, error, "m"), 1e9) == "-1.23457(?)"
-
-
 def test_a_loop_that_is_a_ripple_of_the_samples_is_none(tmp_path, capsys):
     """Maugis's at a Tabor parameter of 4e-4 was one of 4e-35 J, whose error was not a number: nothing was shown."""
     assert cli.main(["assess", *GLASS, "--spacing", "100nm", "--json", str(tmp_path / "found.json")]) == 0
@@ -551,10 +537,9 @@ def test_a_loop_that_is_a_ripple_of_the_samples_is_none(tmp_path, capsys):
     assert "pull-off force" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("thickness", [0.1e-9, 0.2e-9])
-def test_a_sample_is_thicker_than_the_spacing(thickness):
+def test_a_sample_is_thicker_than_the_spacing():
     with pytest.raises(InputError, match="is outside 2e-10 m < thickness, the equilibrium spacing"):
-        Contact(2e-9, 2e9, 0.3, 0.05, 0.2e-9, thickness=thickness)
+        Contact(2e-9, 2e9, 0.3, 0.05, 0.2e-9, thickness=0.2e-9)
 
 
 def test_the_yield_by_another_law_is_told_with_its_premise(silica):
@@ -610,20 +595,13 @@ def test_what_a_solver_refuses_is_said_with_its_reason(error, monkeypatch):
     assert (found.profile, found.finite) == (None, None)
 
 
-@pytest.mark.parametrize("defect", [ValueError, AttributeError])
-def test_a_defect_is_not_taken_for_a_refusal(defect, monkeypatch):
+def test_a_defect_is_not_taken_for_a_refusal(monkeypatch):
     def fail(*_, **__):
-        raise defect("on purpose")
+        raise ValueError("on purpose")
 
     monkeypatch.setattr(convergence, "trace", fail)
-    with pytest.raises(defect, match="on purpose"):
+    with pytest.raises(ValueError, match="on purpose"):
         assess(Contact(**SILICA))
-
-
-def test_progress_is_told():
-    told = []
-    assess(Contact(**BEAD), lambda *step: told.append(step))
-    assert [step[1:] for step in told] == [(i, 4) for i in range(4)]
 
 
 def test_the_record_is_plain_data_without_infinities(bead):
@@ -645,6 +623,8 @@ def test_the_record_is_plain_data_without_infinities(bead):
         (-1e-5, 0.0014, "0.000(2)"),
         (5.0, 0.0, "5.00000(1)"),
         (1.5, 0.11, "1.5(2)"),
+        (-1.2345678, math.inf, "-1.23457(?)"),
+        (-1.2345678, math.nan, "-1.23457(?)"),
     ],
 )
 def test_numbers_with_errors(value, error, text):

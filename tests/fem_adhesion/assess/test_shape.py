@@ -44,7 +44,6 @@ def table(folder):
 @pytest.mark.parametrize(
     ("word", "profile"),
     [
-        ("power:2", profiles.PARABOLOID),
         ("sphere", profiles.Sphere(UNITS.radius_ratio)),
         ("hyperboloid:30nm", profiles.Hyperboloid(30e-9 / UNITS.length)),
         ("tabulated:{table}", None),
@@ -126,12 +125,9 @@ def test_the_spread_of_a_radius_keeps_the_length_of_the_tip(tmp_path):
         (f"--mesh {MESH} --thickness 9nm", "does not go with another body or a thin sample"),
         (f"--mesh {MESH} --modulus 70MPa", "limit: 0 <= tabor <= 10 with --mesh"),
         (f"--mesh {MESH} --poisson 0.2+-0.01", "poisson has a standard deviation, limit: none with --mesh"),
-        ("--mesh no.msh", "no.msh"),
         ("--profile power:3 --modulus 0.1MPa", "<= tabor <= 300 with --profile"),
         ("--profile tabulated:{table} --radius 90nm", "apex has 100 in its table's unit"),
         ("--profile tabulated:{table} --radius 100+-9nm", "limit: none with a tip's table"),
-        ("--profile hyperboloid:30", "b = 30 has no unit"),
-        ("--profile cone:3", "profile = cone, limit: one of"),
     ],
 )
 def test_what_does_not_go_with_a_shape_is_refused_in_a_line(more, words, tmp_path, refused):
