@@ -29,15 +29,17 @@ FROM_KEPT = (COMPARE, REPORT, "make compare")
 KEEPING = """
 import pickle, sys
 from fem_adhesion import cli
-from fem_adhesion.greenwood import study
-compute, told = study.compute, []
-def keeping(*, quick, begin):
-    found = compute(quick=quick, begin=lambda part: (told.append(part), begin(part)))
-    with open({file!r}, "wb") as file:
-        pickle.dump((found, told), file)
+from fem_adhesion.greenwood import claims, study
+compute, judge, told, kept = study.compute, claims.judged, [], []
+def keep(found):
+    kept.append(found)
     return found
-study.compute = keeping
-sys.exit(cli.main())
+study.compute = lambda *, quick, begin: keep(compute(quick=quick, begin=lambda part: (told.append(part), begin(part))))
+claims.judged = lambda found: keep(judge(found))
+code = cli.main()
+with open({file!r}, "wb") as file:
+    pickle.dump((*kept, told), file)
+sys.exit(code)
 """
 """The program in whose place its result is kept beside its files: a study of a minute that tests look into."""
 

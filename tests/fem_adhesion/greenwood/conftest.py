@@ -4,8 +4,6 @@ import pytest
 from page_tables import rows_of
 from whole_runs import GREENWOOD
 
-from fem_adhesion.greenwood import claims
-
 
 @pytest.fixture(scope="session")
 def ran(whole):
@@ -20,9 +18,9 @@ def study(ran):
 
 
 @pytest.fixture(scope="session")
-def judged(study):
+def judged(ran):
     """The claims of the paper, each with its verdict."""
-    return claims.judged(study)
+    return ran.kept[1]
 
 
 @pytest.fixture(scope="session")
