@@ -11,10 +11,8 @@ import numpy as np
 import truths
 from families import by_elements, by_integral, of_path, of_random, relocated, sphere
 from hard import Case, Locking, Measured, Refusal
-from numpy.polynomial.legendre import leggauss
-from references import charted_rung, taylor_hood
+from references import charted_rung, deflection_error, taylor_hood
 from scipy.optimize import minimize_scalar
-from scipy.special import j0, kv
 from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3, MeshTri
 
 import fem_adhesion
@@ -232,7 +230,7 @@ def too_coarse(factor, tabor=2.0):
     trace_charts((Chart(ContactProblem(body.operator, tabor), body.unknowns),))
 
 
-# Locking, and a pressure whose deflection Hankel's transform knows
+# Locking
 
 
 def locking(poissons=(0.3, 0.45, 0.49, 0.499, 0.4999)):
@@ -241,35 +239,14 @@ def locking(poissons=(0.3, 0.45, 0.49, 0.499, 0.4999)):
     for poisson in poissons:
         space = Space(triangles, ElementTriP2())
         mixed = taylor_hood(space, poisson, ElementTriP1())
-        yield Locking(poisson, "P2", "Taylor-Hood P2-P1", _plain(space, poisson), _deflection_error(mixed))
+        plain = condense(space, poisson).operator
+        yield Locking(poisson, "P2", "Taylor-Hood P2-P1", deflection_error(plain), deflection_error(mixed))
         for degree in (3, 4, 6):
             space = Space(cells, ElementQuadP(degree))
             K = projected_stiffness(Cells.of(space), poisson)
             remedied = condense(space, poisson, stiffness=lambda K=K: [(range(len(K)), K)]).operator
-            remedy = "projected dilatation"
-            yield Locking(poisson, f"Q{degree}", remedy, _plain(space, poisson), _deflection_error(remedied))
-
-
-def _plain(space, poisson):
-    return _deflection_error(condense(space, poisson).operator)
-
-
-def _deflection_error(operator):
-    r = operator.radii
-    error = operator.compliance @ smooth_pressure(r) - smooth_deflection(r)
-    return float(np.max(np.abs(error[r < 2.0])))
-
-
-def smooth_pressure(r):
-    """P = (1 + r^2)^-3, with a tail as that of adhesion."""
-    return (1.0 + r**2) ** -3.0
-
-
-def smooth_deflection(r):
-    """Deflection under `smooth_pressure`, whose Hankel transform is k^2 K_2(k)/8; the half-space answers it by 2/k."""
-    x, w = leggauss(200)
-    k = 20.0 * (x + 1.0)
-    return (40.0 * w * k**2 * kv(2, k) / 8.0) @ j0(np.outer(k, r))
+            errors = (deflection_error(one) for one in (condense(space, poisson).operator, remedied))
+            yield Locking(poisson, f"Q{degree}", "projected dilatation", *errors)
 
 
 # The cases

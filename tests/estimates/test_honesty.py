@@ -191,10 +191,9 @@ def test_a_family_whose_estimates_are_too_small_or_too_large_is_not_honest(part,
 
 
 @pytest.mark.parametrize("solve", [halfspace.trace, lambda tabor, rtol: fem_adhesion.trace(Scene(tabor), rtol=rtol)])
-@pytest.mark.parametrize("tabor", [0.5, 2.0])
-def test_the_error_of_the_energy_is_no_less_than_its_last_change(solve, tabor):
+def test_the_error_of_the_energy_is_no_less_than_its_last_change(solve):
     """On the half-space the changes from the twin, which has other cells, may be larger."""
-    path = solve(tabor, rtol=1e-3)
+    path = solve(2.0, rtol=1e-3)
     energies = [energy_released(stage["separated"], stage["zero_approach"]) for stage in path.stages]
     assert energies[-1] == path.energy.value
     changes = np.abs(np.diff(energies))
@@ -239,7 +238,7 @@ def test_a_tolerance_is_met_in_loads_relative_and_in_approaches_to_their_range()
     assert missed(1.0, 1.01e-4, "zero_load") == {"zero_load": ("approach",)}
 
 
-@pytest.mark.parametrize(("tabor", "rtol"), [(0.5, 1e-8), (1, 1e-8), (2, 1e-8), (5, 1e-7)])
+@pytest.mark.parametrize(("tabor", "rtol"), [(1, 1e-8), (5, 1e-7)])
 def test_finite_elements_reach_far(tabor, rtol):
     path = fem_adhesion.trace(Scene(tabor=tabor), rtol=rtol)
     truth = relocated(truths.half_space_of, Scene(tabor), path)

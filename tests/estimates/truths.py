@@ -31,20 +31,10 @@ from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
 
 
-def half_space(tabor, *_):
-    """Two grids of other gradings and extents than any that `halfspace.trace` takes; the nodes are nearly the most."""
-    return _half_spaces(Scales(tabor))
-
-
 def half_space_of(scene):
-    """The same of any law and profile."""
-    return _half_spaces(scene.scales)
-
-
-def _half_spaces(scales):
-    extent = 10 * scales.widened
+    """Two grids of other gradings and extents than any that `halfspace.trace` takes; the nodes are nearly the most."""
     return [
-        Charted(half_space_charts(scales, Resolution(nodes, finest, growth, extent)))
+        Charted(half_space_charts(scene.scales, Resolution(nodes, finest, growth, 10 * scene.scales.widened)))
         for nodes, finest, growth in ((14, 0.45, 2.2), (16, 0.4, 2.5))
     ]
 

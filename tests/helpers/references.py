@@ -3,8 +3,10 @@
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 from scipy import sparse
 from scipy.sparse.linalg import splu
+from scipy.special import j0, kv
 from skfem import Dofs
 
 from fem_adhesion.elasticity.cells import Cells, cell_quadrature, of_gradient, shear_matrix
@@ -22,6 +24,25 @@ from halfspace.values import Array
 def charted_rung(*stages: Charts) -> Rung:
     """Rung of given charts, the last of which also serve for the curve."""
     return Rung(lambda: stages[-1], tuple(Charted(charts) for charts in stages), {})
+
+
+def smooth_pressure(r: Array) -> Array:
+    """P = (1 + r^2)^-3, with a tail as that of adhesion."""
+    return (1.0 + r**2) ** -3.0
+
+
+def smooth_deflection(r: Array) -> Array:
+    """Deflection under `smooth_pressure`, whose Hankel transform is k^2 K_2(k)/8; the half-space answers it by 2/k."""
+    x, w = leggauss(200)
+    k = 20.0 * (x + 1.0)
+    return (40.0 * w * k**2 * kv(2, k) / 8.0) @ j0(np.outer(k, r))
+
+
+def deflection_error(operator: ElasticOperator) -> float:
+    """Largest error near the axis, in beta, of the deflection of a half-space under `smooth_pressure`."""
+    r = operator.radii
+    error = operator.compliance @ smooth_pressure(r) - smooth_deflection(r)
+    return float(np.max(np.abs(error[r < 2.0])))
 
 
 def strain_energy(body: CondensedBody, pressure: Array) -> float:

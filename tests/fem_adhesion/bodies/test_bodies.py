@@ -8,8 +8,6 @@ from facets import boundary_basis
 from skfem import ElementQuadP
 from whole_sphere import surface_deflection
 
-import fem_adhesion
-from fem_adhesion import Block, Scene
 from fem_adhesion.elasticity.cells import stiffness_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped, sliding
@@ -76,7 +74,7 @@ def patch():
         return space(8)
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49])
+@pytest.mark.parametrize("poisson", [0.0, 0.49])
 def test_uniform_pressure_shortens_the_body_uniaxially(patch, poisson):
     """u_z = -p (z + R)/E above the sliding mid-plane, E = 1 - nu^2."""
     body = condense(patch, poisson, far_field=sliding)
@@ -88,28 +86,10 @@ def test_uniform_pressure_shortens_the_body_uniaxially(patch, poisson):
 # The independent solver against closed forms, before it is trusted.
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.4999])
-def test_deflection_under_a_smooth_pressure(poisson):
-    operator = condensed(11, poisson, finest=0.2).operator
+@pytest.mark.parametrize(("poisson", "traction"), [(0.0, "projected"), (0.4999, "projected"), (0.3, "surface")])
+def test_deflection_under_a_smooth_pressure(poisson, traction):
+    """On the surface the force on its area, p cos(theta) dA, is that of p on the projected one."""
+    operator = condensed(11, poisson, traction=traction, finest=0.2).operator
     exact = surface_deflection(R, poisson, gaussian, operator.radii)
-    error = operator.compliance @ gaussian(operator.radii) - exact
-    assert np.max(np.abs(error)) < 1e-7 * np.max(exact)
-
-
-def test_deflection_when_the_pressure_acts_on_the_surface():
-    """The force on its area, p cos(theta) dA, is that of p on the projected one."""
-    operator = condensed(11, traction="surface", finest=0.2).operator
-    exact = surface_deflection(R, 0.3, gaussian, operator.radii)
-    error = operator.compliance @ (gaussian(operator.radii) * cosine(operator.radii)) - exact
-    assert np.max(np.abs(error)) < 1e-7 * np.max(exact)
-
-
-def test_a_block_is_as_large_as_asked_for():
-    """Half as large its far side, which is clamped, takes twice as much off the approach."""
-    approaches = [
-        fem_adhesion.trace(Scene(0.3, Block(radius=size, far_field="clamped")), rtol=1e-2).event("pull_off").approach
-        for size in (10.0, 20.0, 40.0)
-    ]
-    first, second = np.abs(np.diff(approaches))
-    assert first > 1e-3
-    assert first == pytest.approx(2 * second, rel=0.2)
+    pressure = gaussian(operator.radii) * (cosine(operator.radii) if traction == "surface" else 1.0)
+    assert np.max(np.abs(operator.compliance @ pressure - exact)) < 1e-7 * np.max(exact)

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from facets import far_reaction
-from references import strain_energy
-from scipy.special import j0, kv
-from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
+from references import deflection_error, smooth_pressure, strain_energy
+from skfem import ElementQuadP, ElementTriP1, ElementTriP3
 
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped, free, point_load
@@ -15,38 +14,22 @@ from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 NU = 0.3
 
 
-def bump(r):
-    """A smooth pressure with a tail like that of adhesion."""
-    return (1.0 + r**2) ** -3.0
-
-
-def bump_deflection(r):
-    """The Hankel transform of the bump is k^2 K_2(k)/8, and each k deflects by 2/k."""
-    x, w = np.polynomial.legendre.leggauss(200)
-    k = 20.0 * (x + 1.0)
-    return (40.0 * w * k**2 * kv(2, k) / 8.0) @ j0(np.outer(k, r))
-
-
-def bump_error(space, far_field, poisson=NU):
-    operator = condense(space, poisson, far_field=far_field).operator
-    near = operator.radii < 2.0
-    return np.max(np.abs(operator.compliance @ bump(operator.radii) - bump_deflection(operator.radii))[near])
+def error(space, far_field=point_load, poisson=NU):
+    return deflection_error(condense(space, poisson, far_field=far_field).operator)
 
 
 # --- closed forms ---
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
+@pytest.mark.parametrize("poisson", [0.0, 0.45])
 def test_smooth_pressure_to_seven_digits(poisson):
-    assert bump_error(Space(block_grid(0.3, 3.0, 50.0), ElementQuadP(6)), point_load, poisson) < 2e-7
+    assert error(Space(block_grid(0.3, 3.0, 50.0), ElementQuadP(6)), poisson=poisson) < 2e-7
 
 
-@pytest.mark.parametrize(
-    ("element", "accuracy"), [(ElementTriP1(), 2e-2), (ElementTriP2(), 4e-4), (ElementTriP3(), 1e-5)]
-)
+@pytest.mark.parametrize(("element", "accuracy"), [(ElementTriP1(), 2e-2), (ElementTriP3(), 1e-5)])
 def test_triangles_on_the_quarter_disc(element, accuracy):
     space = Space(quarter_disc(50.0, graded_size(0.125, 2.0, 0.2)), element)
-    assert bump_error(space, point_load) < accuracy
+    assert error(space) < accuracy
 
 
 # --- far fields ---
@@ -62,7 +45,7 @@ def test_triangles_on_the_quarter_disc(element, accuracy):
 )
 def test_truncation_order_of_the_far_field(far_field, lengths, lowest, highest):
     """Order 5 with the point load: c carries the load, and the next moment of P meets itself reflected."""
-    errors = [bump_error(Space(block_grid(0.3, 1.5, L), ElementQuadP(6)), far_field) for L in lengths]
+    errors = [error(Space(block_grid(0.3, 1.5, L), ElementQuadP(6)), far_field) for L in lengths]
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert np.all(orders > lowest)
     assert np.all(orders < highest)
@@ -85,7 +68,7 @@ BODIES = [
 def test_the_operator_obeys_mechanics_and_describes_its_surface(mesh, element, far_field):
     body = condense(Space(mesh, element), NU, far_field=far_field)
     operator = body.operator
-    pressure = np.cos(operator.radii) * bump(operator.radii)  # of both signs
+    pressure = np.cos(operator.radii) * smooth_pressure(operator.radii)  # of both signs
     deflection = operator.compliance @ pressure
     load = operator.weights @ pressure
     symmetric = operator.compliance / operator.weights

@@ -7,9 +7,7 @@ from scipy.spatial.distance import cdist
 from skfem import (
     Basis,
     BilinearForm,
-    ElementQuad1,
     ElementQuadP,
-    ElementTriP1,
     ElementTriP2,
     ElementTriP3,
     ElementVector,
@@ -42,7 +40,7 @@ def test_boundaries_are_named_and_complete(mesh):
     assert mesh.p[1].max() == 0.0
 
 
-@pytest.mark.parametrize("fine", [0.4, 0.1, 0.01])
+@pytest.mark.parametrize("fine", [0.4, 0.01])
 def test_quarter_disc_respects_sizes_with_no_sharp_angle(fine):
     size = graded_size(fine, 1.0, 0.25)
     mesh = quarter_disc(50.0, size)
@@ -71,13 +69,10 @@ def axisymmetric_elasticity(u, v, w):
 @pytest.mark.parametrize(
     ("mesh", "element"),
     [
-        (quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP1()),
-        (quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP2()),
         (quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP3()),
-        (block_grid(0.7, 1.4, 5.0), ElementQuad1()),
         (block_grid(0.7, 1.4, 5.0), ElementQuadP(3)),
     ],
-    ids=["P1", "P2", "P3", "Q1", "Q3"],
+    ids=["P3", "Q3"],
 )
 def test_stiffness_equals_scikit_fems_assembly(mesh, element):
     space = Space(mesh, element)
@@ -90,7 +85,7 @@ def test_stiffness_equals_scikit_fems_assembly(mesh, element):
 # --- Boussinesq's closed forms and traces ---
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
+@pytest.mark.parametrize("poisson", [0.0, 0.45])
 def test_boussinesq_stress_belongs_to_the_displacement(poisson):
     r, z, step = np.array([0.4, 1.3, 2.0]), np.array([-0.2, -1.0, -3.0]), 1e-5
 
@@ -107,12 +102,11 @@ def test_boussinesq_stress_belongs_to_the_displacement(poisson):
 @pytest.mark.parametrize(
     "space",
     [
-        Space(quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP3()),
         Space(refined(quarter_disc(5.0, graded_size(0.7, 1.0, 0.5))), ElementTriP2()),
         Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(4)),
         Space(held_sphere(3.0, np.linspace(0, 5.1, 5), np.linspace(0, 2.7, 4), 30.0), ElementQuadP(5)),
     ],
-    ids=["triangles", "curved triangles", "rectangles", "held sphere"],
+    ids=["curved triangles", "rectangles", "held sphere"],
 )
 def test_boundary_points_are_those_of_scikit_fem(space, name):
     basis, trace = boundary_basis(space, name, 4), boundary_points(space, name, 4)

@@ -54,8 +54,7 @@ def surface_area(space, name):
     return np.sum(ring_measure(trace.places[0]) * trace.lengths)
 
 
-@pytest.mark.parametrize("make", [sphere, coarse_sphere])
-@pytest.mark.parametrize("cap_angle", CAPS)
+@pytest.mark.parametrize(("make", "cap_angle"), [*((sphere, cap) for cap in CAPS), (coarse_sphere, 1.0)])
 def test_volume_areas_and_cells_are_those_of_a_sphere(make, cap_angle):
     mesh = make(cap_angle)
     radius, space = -mesh.p[1].min() / 2, Space(mesh, ElementQuadP(6))
@@ -107,9 +106,8 @@ def test_uniform_tension_is_exact_in_elements_of_the_cells(cap_angle):
     assert np.max(np.abs(forces[space.components[:, inside]])) < 1e-9 * np.max(np.abs(forces))
 
 
-@pytest.mark.parametrize("grip", [clamped, sliding])
-def test_error_falls_with_the_degree_in_spite_of_the_rim(grip):
-    bodies = [held(sphere(30.0), degree, grip) for degree in (3, 4, 5, 8)]
+def test_error_falls_with_the_degree_in_spite_of_the_rim():
+    bodies = [held(sphere(30.0), degree) for degree in (3, 4, 5, 8)]
     values = np.array([pole_compliance(body) for body in bodies])
     errors = np.abs(values[:-1] / values[-1] - 1)
     assert np.all(errors[1:] < errors[:-1] / 4)

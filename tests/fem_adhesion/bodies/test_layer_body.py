@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from agreement import differing
 
 import fem_adhesion
 import halfspace
@@ -26,7 +27,6 @@ from halfspace.errors import ContactTooWide, InputError, NotConverged
 from halfspace.laws import Dlvo, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
 
-QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 STIFF = Coated(2.0, 10.0, poisson=0.3)
 PLIES = Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.2), Stratum(0.5, 0.3, 3.0)
 STACK = Layers([Stratum(0.4, 0.3), Stratum(0.5, 0.45, 0.2), Stratum(3, 0.2, 2.0)], Substrate(5.0, 0.1))
@@ -40,18 +40,14 @@ def traced(scene, rtol):
 @pytest.mark.parametrize(
     ("scene", "rtol"),
     [
-        (Scene(1.0, Layer(2.0, poisson=0.3)), 1e-5),
         (Scene(1.0, Layer(0.1, poisson=0.4999)), 1e-4),
         # What is pressed out of the contact goes on beyond the edge, and a steep tip's attraction ends before the layer
         # has hidden its base.
         (Scene(0.5, Layer(0.5, "sliding"), law=PowerLaw(2.5, 9.5), profile=Power(4)), 1e-4),
         (Scene(1.0, Layer(0.5, "sliding", poisson=0.4999), profile=Power(10)), 1e-4),
         (Scene(1.0, Layer(1000.0, "sliding")), 1e-3),
-        (Scene(1.0, Layer(2.0, poisson=0.3), profile=Sphere(30.0)), 1e-4),
         (Scene(1.0, STIFF), 1e-4),
         (Scene(1.0, Coated(0.01, 10.0, poisson=0.3)), 1e-3),  # bends over a tenth of a half-space's spike
-        (Scene(1.0, Coated(0.05, 0.01, 0.0, poisson=0.499)), 1e-4),
-        (Scene(1.0, STACK), 1e-3),
         (Scene(0.562, Layer(3.76, "sliding", poisson=0.47), Hyperboloid(1.79), law=Dlvo(-0.03, 4.73)), 1e-4),  # to 1e9
         (Scene(1.0, Layers([Stratum(0.2, 0.3), Stratum(0.2, 0.4999, 0.02)], "sliding")), 1e-3),  # complex images
         # The attraction reaches to 4e9 beta: cells as long, 0.0855 deep, made the stiffness singular.
@@ -68,11 +64,7 @@ def test_both_solvers_have_the_same_events_on_a_layer(scene, rtol):
     integral = halfspace.trace(scene.tabor, body=scene.body.layered, law=scene.law, profile=scene.shape, rtol=rtol / 10)
     assert elements.met
     assert elements.energy.agrees(integral.energy)
-    assert set(elements.events) == set(integral.events)
-    for name, event in elements.events.items():
-        for quantity in QUANTITIES:
-            one, other = event.estimate(quantity), integral.events[name].estimate(quantity)
-            assert one.value == pytest.approx(other.value, rel=0, abs=one.error + other.error, nan_ok=True)
+    assert differing(elements, integral) == []
 
 
 @pytest.mark.parametrize("body", [HalfSpace(), Layer(2.0, poisson=0.3)], ids=str)
@@ -113,12 +105,9 @@ def test_strata_are_replaced_with_their_material():
 
 
 BODIES = [
-    Coated(2.0, 1.0, 0.3, poisson=0.3),
     Coated(0.5, 100.0, 0.499, poisson=0.0),
-    Coated(50.0, 100.0, poisson=0.3),
     Coated(0.5, 0.01, 0.0, poisson=0.4999),
     STACK,
-    Layers(PLIES),
     Layers(PLIES, "sliding"),
 ]
 
@@ -215,9 +204,7 @@ def test_compare_agrees_on_the_command_line(tmp_path):
 @pytest.mark.parametrize(
     ("asked", "wrong"),
     [
-        (Layer(2.0, poisson=0.3), {"thickness": 2.1}),
-        (Layer(2.0, poisson=0.3), {"poisson": 0.33}),
-        (STIFF, {"modulus_ratio": 11.0}),
+        (STIFF, {"thickness": 2.1}),
         (STIFF, {"substrate_poisson": 0.35}),
     ],
     ids=str,
@@ -235,16 +222,13 @@ def test_compare_rejects_another_body(asked, wrong):
     ("body", "words"),
     [
         ("layer", "body = layer, limit: layer:thickness,bonded|sliding; give thickness, beta"),
-        ("coated:2,1e3", "modulus_ratio = 1000 is outside 0.001 <="),
         (
             "layers",
             "limit: layers:thickness,poisson,modulus/.../BASE, BASE being bonded|sliding|substrate:modulus,poisson;",
         ),
         ("layers:1,0.3,1,2", "strata = stratum:1,0.3,1,2, limit: stratum:thickness,poisson,modulus; leave out 2"),
-        ("layers:1,0.3,2", "modulus = 2 of the first stratum does not serve"),
         ("layers:1,0.4 --poisson 0.3", "poisson = 0.3 with strata, limit: that of the"),
         ("layers:1/glued", "base = glued, limit: one of substrate"),
-        ("layer:2,glued", "thickness"),
     ],
     ids=str,
 )
@@ -261,9 +245,7 @@ def test_a_stratum_by_its_thickness_is_else_like_the_first(monkeypatch):
 
     monkeypatch.setattr(comparisons, "run", run)
     for words, strata in (
-        (["layers:0.4", "--poisson", "0.2"], [Stratum(0.4, 0.2)]),
         (["layers:0.4/0.5", "--poisson", "0.2"], [Stratum(0.4, 0.2), Stratum(0.5, 0.2)]),
-        (["layers:0.4"], [Stratum(0.4, 0.3)]),
         (["layers:0.4/0.5,0.1"], [Stratum(0.4, 0.3), Stratum(0.5, 0.1)]),
         (["layers:0.4,0.2/0.5,0.1"], [Stratum(0.4, 0.2), Stratum(0.5, 0.1)]),
     ):

@@ -146,7 +146,6 @@ FORMATS = [
     ("msh", with_physical_groups, {"file_format": "gmsh22"}),
     ("msh", with_physical_groups, {"file_format": "gmsh22", "binary": False}),
     ("vtu", with_integer_data, {}),
-    ("vtk", with_integer_data, {}),
     ("inp", with_cell_sets, {}),
 ]
 
@@ -195,16 +194,15 @@ def test_a_mesh_that_scikit_fem_saved_is_read(tmp_path):
 # --- the unit of length ---
 
 
-@pytest.mark.parametrize("unit", [0.96, 1.04])
-@pytest.mark.parametrize("name", EXAMPLES)
-def test_a_mesh_is_scaled_to_the_radius_of_its_pole(tmp_path, name, unit):
+def test_a_mesh_is_scaled_to_the_radius_of_its_pole(tmp_path, example):
+    name, known = example
     raw = meshio.read(MESHES / f"{name}.msh")
-    raw.points *= unit
+    raw.points *= 1.04
     raw.points[:, 1] += 3.0
     raw.write(tmp_path / "body.msh", file_format="gmsh22")
     mesh, radius = read_scaled(tmp_path / "body.msh")
-    assert radius == pytest.approx(unit, rel=1e-8, abs=0)
-    np.testing.assert_allclose(mesh.p, read_body(MESHES / f"{name}.msh").p, rtol=0, atol=5e-8)
+    assert radius == pytest.approx(1.04, rel=1e-8, abs=0)
+    np.testing.assert_allclose(mesh.p, known.p, rtol=0, atol=5e-8)
 
 
 def test_the_radius_of_a_coarse_sphere_is_found_to_five_digits(tmp_path):
@@ -213,14 +211,6 @@ def test_the_radius_of_a_coarse_sphere_is_found_to_five_digits(tmp_path):
     points[:, 1] += points[:, 0] ** 2 / 2 - (1 - np.sqrt(1 - points[:, 0] ** 2))
     _, radius = read_scaled(written(to_meshio(points, cells, groups), tmp_path / "body.vtu"))
     assert radius == pytest.approx(1.0, abs=3e-5)
-
-
-@pytest.mark.parametrize("unit", [0.94, 1.06])
-def test_a_mesh_in_another_unit_is_refused_with_the_factor(tmp_path, unit):
-    points, cells, groups = paraboloid()
-    message = refusal(written(to_meshio(unit * points, cells, groups), tmp_path / "bad.vtu"))
-    assert f"radius of curvature at the pole = {unit:g} must be 1 within 5%" in message
-    assert f"multiply all lengths by {1 / unit:.4g} " in message
 
 
 def test_clockwise_cells_are_cells(tmp_path):
@@ -293,7 +283,7 @@ SPOILT = [  # what is done to a sound mesh, and what is said of it
         r"^1 lines of the contact turn back .*; z must be a function of r",
     ),
     ("points[:, 1] *= -1.0", r"^16 lines of the contact lie below the body.*turn the body over"),
-    ("points *= 50.0", r"radius of curvature at the pole = 50 must be 1 within 5%.*multiply all lengths by 0\.02 "),
+    ("points *= 1.06", r"radius of curvature at the pole = 1\.06 must be 1 within 5%.*all lengths by 0\.9434 "),
     ("points[:, 1] += points[:, 0] ** 2", r"nodes stand above the pole"),  # as round, on the other side
     (
         "points[:, 1] += 0.5 * points[:, 0] ** 2 - points[:, 0]",
@@ -356,7 +346,7 @@ def test_a_file_of_no_format_is_refused_in_silence(tmp_path, capfd, suffix):
 def test_a_file_cut_short_anywhere_is_refused(tmp_path):
     whole = (MESHES / "hemisphere.msh").read_bytes()
     path = tmp_path / "cut.msh"
-    for end in np.linspace(0, len(whole) - 20, 15).astype(int):
+    for end in np.linspace(0, len(whole) - 20, 8).astype(int):
         path.write_bytes(whole[:end])
         refusal(path)
 

@@ -73,13 +73,11 @@ def test_the_command_refuses_in_one_line(arguments, message, refused):
 
 BODIES = {
     "under a sphere": (Scene(1.0, profile=Sphere(30.0)), SOLVERS),
-    "hemisphere": (sphere(), HARMONICS),
     "nearly incompressible": (sphere(poisson=0.4999), HARMONICS),
     "under a paraboloid": (sphere(Paraboloid()), HARMONICS),
     "two spheres": (facing(0.3, 0.45, 2.0), HARMONICS),
     "sphere on a half-space": (facing(0.5, 0.2), HARMONICS),
     "traction on the surface": (sphere(material=LinearElastic(traction="surface")), None),
-    "bonded": (sphere(grip="bonded"), None),
     "bonded pair": (facing(0.3, 0.45, 2.0, grip="bonded"), None),
     "held over a cap": (Scene(1.0, HeldSphere(radius_ratio=30.0)), None),
     "a mesh": (Scene(1.0, Meshed(MESH, radius_ratio=30.0, grip="bonded")), None),

@@ -173,13 +173,3 @@ def test_harmonics_refuse_what_they_do_not_know():
     for scene in (Scene(1.0, sliding, counter=bonded, share=0.5), Scene(1.0, rubber), Scene(1.0, bonded), Scene(1.0)):
         with pytest.raises(InputError, match="is not known to harmonics"):
             harmonics.trace(scene)
-
-
-def test_a_bonded_pair_is_not_held_against_a_sliding_one():
-    scene = Scene(
-        1.0,
-        fem_adhesion.Hemisphere(radius_ratio=40.0),
-        counter=fem_adhesion.Hemisphere(radius_ratio=40.0, grip="bonded"),
-        share=0.5,
-    )
-    assert reference_for(scene) is None

@@ -37,7 +37,7 @@ def curves():
     return {tabor: halfspace.trace(tabor) for tabor in (0.02, 0.05, 0.5, 0.69, 0.7, 0.71, 1, 2, 3, 5, 10)}
 
 
-@pytest.mark.parametrize("tabor", [0.02, 0.71, 2, 10])
+@pytest.mark.parametrize("tabor", [0.02, 10])
 def test_the_curve_goes_on_from_grid_to_grid(curves, tabor):
     """The same state on two grids, of which each is right to some 1e-5 where the edge leaves the one for the other."""
     separated, contact = curves[tabor].segments
@@ -115,9 +115,7 @@ def test_what_loads_slowly_is_loaded_if_needed(code, unneeded):
 @pytest.mark.parametrize(
     ("tabor", "law", "points", "factorisations"),
     [
-        (0.05, LENNARD_JONES, 35, 125),
         (1, LENNARD_JONES, 35, 155),
-        (50, LENNARD_JONES, 75, 365),
         (300, LENNARD_JONES, 95, 400),
         (1, Dugdale(0.1), 55, 265),
     ],
@@ -154,7 +152,7 @@ BY_TABOR = 0.459  # R dgamma/eps by which the margin falls with the Tabor parame
 
 
 @pytest.mark.parametrize("rtol", [1e-1, 1e-8])
-@pytest.mark.parametrize("tabor", [0.6970, 0.6972146, 0.697214614, 0.69721462, 0.6974])
+@pytest.mark.parametrize("tabor", [0.6970, 0.697214614, 0.69721462])
 def test_a_curve_about_to_fold_says_how_far_its_folds_are(tabor, rtol):
     path = halfspace.trace(tabor, rtol=rtol)
     margin, truth = path.margin, BY_TABOR * (CRITICAL - tabor)

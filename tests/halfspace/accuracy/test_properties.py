@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import pytest
 from facets import far_reaction
 from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
@@ -12,7 +11,7 @@ from skfem import ElementQuadP
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Block, HalfSpace, Scene
+from fem_adhesion import HalfSpace, Scene
 from fem_adhesion.elasticity.cells import stiffness_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space
@@ -20,58 +19,18 @@ from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh.block import block_grid
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
 from halfspace.equilibrium.path import correct
-from halfspace.errors import InputError
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 
 tabors = st.floats(-12, math.log10(200)).map(lambda x: 10.0**x) | st.floats(0.05, 10)
 poissons = st.floats(0, 0.499999)
 rtols = st.floats(-3, -1).map(lambda x: 10.0**x)
 loads = st.floats(-2, 2).map(lambda x: 10.0**x)
-any_float = st.floats()  # NaN and infinities among them
 
 
 def over_inputs(examples):
     """The same examples at every run, as many as are worth their time; none is shrunk, which takes minutes."""
     phases = (Phase.explicit, Phase.generate)
     return settings(max_examples=examples, derandomize=True, deadline=None, database=None, phases=phases)
-
-
-WITHIN = {  # the limits of README, and what a number has to be to lie in them
-    "tabor": lambda x: 1e-12 <= x <= 300,
-    "poisson": lambda x: 0 <= x <= 0.499999,
-    "rtol": lambda x: 1e-9 <= x <= 1e-1,
-    "to_load": lambda x: 0 < x <= 1000,
-    "radius": lambda x: 5 < x <= 1e9,  # for a Tabor parameter of 1 or more
-    "far_field": lambda x: x in ("point_load", "clamped", "free"),
-}
-ANYTHING = {
-    "far_field": st.text(max_size=12) | st.sampled_from(["", "Clamped", "clamped ", "point load", "free\n", "none"])
-}
-GOOD = {
-    "tabor": tabors,
-    "poisson": poissons,
-    "rtol": rtols,
-    "to_load": loads,
-    "radius": st.floats(6, 9).map(lambda x: 10.0**x) | st.just(5e6),
-    "far_field": st.sampled_from(["point_load", "clamped", "free"]),
-}
-
-
-def is_within(name, value):
-    return WITHIN[name](value)
-
-
-def bad(name):
-    """Values outside the limits of an argument, those just outside among them."""
-    return ANYTHING.get(name, any_float).filter(lambda value: not is_within(name, value))
-
-
-def require_refused(make, name, value):
-    """The refusal is about the argument at fault, and gives its value."""
-    with pytest.raises(InputError) as refused:
-        make()
-    shown = repr(value) if isinstance(value, str) else f"{value:.9g}"
-    assert str(refused.value).startswith(f"{name} = {shown} is ")
 
 
 def require_finite(path):
@@ -113,16 +72,7 @@ def require_balance_and_energy(path):
 # --- the half-space ---
 
 
-@pytest.mark.parametrize("name", ["tabor", "rtol", "to_load"])
-@over_inputs(40)
-@given(data=st.data())
-def test_one_number_outside_its_limits_is_refused(name, data):
-    good = {other: data.draw(GOOD[other]) for other in ("tabor", "rtol", "to_load")}
-    value = data.draw(bad(name))
-    require_refused(lambda: halfspace.trace(**(good | {name: value})), name, value)
-
-
-@over_inputs(12)
+@over_inputs(6)
 @given(tabor=tabors, factor=st.floats(1.001, 3), rtol=rtols, to_load=loads)
 @example(tabor=0.6972, factor=0.6973 / 0.6972, rtol=1e-2, to_load=5.0)  # about the critical value
 @example(tabor=3.9743, factor=1.001, rtol=1e-2, to_load=5.0)  # where a second pair of folds is born
@@ -142,17 +92,7 @@ def test_every_half_space_is_solved_softer_ones_pull_less(tabor, factor, rtol, t
 # --- finite elements ---
 
 
-@pytest.mark.parametrize("name", ["tabor", "poisson", "radius", "far_field"])
-@over_inputs(60)
-@given(data=st.data())
-def test_a_scene_is_refused_for_what_is_wrong_with_it(name, data):
-    asked = {other: data.draw(GOOD[other]) for other in ("poisson", "far_field")}
-    asked |= {"tabor": data.draw(st.floats(1, 3)), "radius": data.draw(GOOD["radius"])}
-    asked[name] = data.draw(bad(name))
-    require_refused(lambda: Scene(asked.pop("tabor"), Block(**asked)), name, asked[name])
-
-
-@over_inputs(12)
+@over_inputs(6)
 @given(tabor=tabors, poisson=poissons, rtol=st.floats(-2, -1).map(lambda x: 10.0**x), to_load=st.floats(0.1, 20))
 @example(tabor=1.0, poisson=0.499999, rtol=1e-2, to_load=5.0)
 @example(tabor=1e-12, poisson=0.0, rtol=1e-2, to_load=5.0)
@@ -164,7 +104,7 @@ def test_every_contact_with_a_body_is_solved(tabor, poisson, rtol, to_load):
     require_balance_and_energy(path)
 
 
-@over_inputs(40)
+@over_inputs(15)
 @given(poisson=poissons, radii=st.lists(st.floats(0.1, 8), min_size=1, max_size=4), degree=st.integers(3, 5))
 @example(poisson=0.499999, radii=[3.1, 0.1, 5.3], degree=3)
 @example(poisson=0.4999, radii=[3.1, 0.1, 5.3], degree=4)

@@ -19,10 +19,9 @@ from halfspace.errors import NotConverged, Unsolved
 from halfspace.scales import Scales
 
 
-@pytest.mark.parametrize("rtol", [1e-1, 1e-2])
-def test_events_are_found_on_a_block_three_times_as_large(rtol):
+def test_events_are_found_on_a_block_three_times_as_large():
     """The smaller one is only two attractions wide: its pull-off load is a sixth less, all events lie elsewhere."""
-    path = fem_adhesion.trace(Scene(0.1, Block(radius=20.0, far_field="clamped")), rtol=rtol)
+    path = fem_adhesion.trace(Scene(0.1, Block(radius=20.0, far_field="clamped")), rtol=1e-1)
     for stage in path.stages:
         for name, event in stage.items():
             assert abs(event.condition.of(event.point)) < 1e-9, name

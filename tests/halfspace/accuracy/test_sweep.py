@@ -59,9 +59,9 @@ def test_arrays_hold_the_curves_in_the_order_asked(found):
             for number in NUMBERS:
                 expected = getattr(event, number) if event else np.nan
                 np.testing.assert_equal(getattr(series, number)[i], expected)
-        lost = cycle(path)
-        assert found.energy_lost[i] == (lost.energy_lost.value if lost else 0.0)
-        assert found.energy_lost_error[i] == (lost.energy_lost.error if lost else 0.0)
+        both = cycle(path)
+        lost = both.energy_lost if both else Estimate(0.0, 0.0)
+        assert (found.energy_lost[i], found.energy_lost_error[i]) == (lost.value, lost.error)
         assert found.met[i] == path.met
     assert not found.reasons
 
@@ -99,7 +99,7 @@ def test_a_curve_that_cannot_be_traced_leaves_the_others(monkeypatch, found):
         ({"tabors": [1.0, 400.0]}, "outside"),
         ({"tabors": [1.0], "rtol": 1.0}, "outside"),
         ({"tabors": [1.0], "to_load": -1}, "outside"),
-        ({"tabors": [1.6, 1.7, 1.8, 1.9], "law": _Doubled()}, "the energy at H = 0 is -2"),
+        ({"tabors": [1.6], "law": _Doubled()}, "the energy at H = 0 is -2"),
     ],
 )
 def test_what_is_out_of_range_is_refused_before_any_work(monkeypatch, asked, why):
@@ -119,8 +119,7 @@ def test_the_table_has_the_numbers_of_the_sweep(capsys, found):
     assert cli.main(["sweep", "--tabor", *map(str, TABORS), "--rtol", str(RTOL), "--csv", "-", "--jobs", "1"]) == 0
     out = capsys.readouterr()
     rows = rows_of(out.out)
-    told = "3 of 3 curves known, 3 of them from halfspace.atlas, 2 fold, 3 as accurate as asked, rtol 0.001"
-    assert told in out.err
+    assert "3 of 3 curves known, 3 of them from halfspace.atlas, 2 fold, 3 as accurate as asked, rtol 0.001" in out.err
     for i, row in enumerate(rows):
         assert float(row["tabor"]) == TABORS[i]
         assert row["source"] == "atlas"
@@ -148,16 +147,15 @@ def test_what_the_atlas_lacks_is_solved(capsys):
         assert float(row["energy_R_dgamma_eps"]) == found.energy[i]
         for name, series in found.events.items():
             for number, unit in UNITS.items():
-                for column, values in ((number, number), (f"{number}_error", f"{number}_error")):
-                    told, value = row[f"{name}_{column}_{unit}"], getattr(series, values)[i]
+                for column in (number, f"{number}_error"):
+                    told, value = row[f"{name}_{column}_{unit}"], getattr(series, column)[i]
                     assert told == ("" if np.isnan(value) else repr(float(value)))
 
 
 def test_the_law_reaches_every_curve(capsys):
-    words = ["--law", "morse:3", "--rtol", str(RTOL), "--csv", "-", "--jobs", "1"]
-    assert cli.main(["sweep", "--tabor", "1", *words]) == 0
+    assert cli.main(f"sweep --tabor 1 --law morse:3 --rtol {RTOL} --csv - --jobs 1".split()) == 0
     (row,) = rows_of(capsys.readouterr().out)
-    path = halfspace.trace(1.0, law=halfspace.laws.Morse(3.0), rtol=RTOL)
+    path = halfspace.trace(1.0, law=Morse(3.0), rtol=RTOL)
     assert float(row["pull_off_load_R_dgamma"]) == path.event("pull_off").load
 
 
@@ -171,16 +169,10 @@ def test_a_range_is_of_equal_ratios_with_both_ends(text, values):
     assert tabors_of([text, text]) == tabors_of([text])
 
 
-@pytest.mark.parametrize(
-    "text", ["1:2", "1:2:x", "0:1:5", "1:2:1", "1:2:3:4", "1:1:3", "400", "1:inf:5", "1:2:99999999999"]
-)
-def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, text):
-    table = tmp_path / "table.csv"
-    assert cli.main(["sweep", f"--tabor={text}", "--csv", str(table)]) == 2
-    err = capsys.readouterr().err
-    assert err.count("\n") == 1
-    assert "; " in err
-    assert not table.exists()
+@pytest.mark.parametrize("text", ["1:2", "1:2:x", "0:1:5", "1:2:1", "1:1:3", "400", "1:inf:5", "1:2:99999999999"])
+def test_what_is_no_tabor_parameter_is_refused_in_one_line(refused, tmp_path, text):
+    refused(f"sweep --tabor={text} --csv", tmp_path / "table.csv", words="; ")
+    assert not (tmp_path / "table.csv").exists()
 
 
 def counted(tabor, **asked):

@@ -1,26 +1,22 @@
 """Estimates hold what a tighter tolerance finds, in contacts each of which was once outside, or without an end."""
 
-import numpy as np
 import pytest
+from agreement import QUANTITIES, differing
 
 import halfspace
 from halfspace import Coated, Layer
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
 
-NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 FILM = Coated(0.31, modulus_ratio=9.463, poisson=0.225, substrate_poisson=0.05)
 SLIDING = Layer(0.0816, 0.4999, "sliding")
 
 CONTACTS = {  # what was wrong: the contact, its tolerance, and the tighter one
-    "a range of ten spacings is no power": (1.0, {"law": Exponential(0.1)}, 1e-5, 1e-8),
+    "a range of ten spacings is no power": (1.0, {"law": Exponential(0.1)}, 1e-5, 1e-7),
     "a range so short that points leapt over it": (1e-6, {"law": Exponential(50)}, 1e-4, 1e-6),
-    "another in which there is one point": (0.03, {"law": Exponential(20)}, 1e-3, 1e-5),
-    "another, asked closely": (0.01, {"law": Exponential(40)}, 1e-6, 1e-8),
     "a step on cells that grew threefold": (1.0, {"law": Dugdale(0.1)}, 1e-4, 1e-6),
-    "the same on a sphere": (1.0, {"law": Dugdale(0.2), "profile": Sphere(30)}, 1e-4, 1e-6),
     "the same without short cells at a tip": (3.0, {"law": Dugdale(0.2), "profile": Hyperboloid(0.3)}, 1e-5, 1e-7),
-    "folds lost outside the step": (50.0, {"law": Dugdale(0.2), "profile": RoundedPunch(2.0)}, 1e-4, 1e-7),
+    "folds lost outside the step": (50.0, {"law": Dugdale(0.2), "profile": RoundedPunch(2.0)}, 1e-4, 1e-6),
     "gaps of 1e27 eps far out": (3.0, {"profile": Power(8)}, 1e-5, 1e-7),
     "gaps turned negative on wide cells": (7.8083, {"law": Dlvo(-0.47, 0.84), "profile": Power(8.7)}, 1e-3, 1e-4),
     "the same on a coating": (
@@ -35,7 +31,7 @@ CONTACTS = {  # what was wrong: the contact, its tolerance, and the tighter one
         1e-2,
         1e-5,
     ),
-    "the same on a layer": (5.93, {"law": Exponential(1.31, 10), "body": SLIDING}, 1e-2, 1e-6),
+    "the same on a layer": (5.93, {"law": Exponential(1.31, 10), "body": SLIDING}, 1e-2, 1e-4),
     "a barrier on a stiff coating": (2.0, {"law": Dlvo(0.3, 1.0), "body": Coated(0.2, 20)}, 1e-2, 1e-4),
     "wider than the operator was made for": (0.0434, {"law": Morse(0.63), "body": Layer(6.51, 0.413)}, 1e-3, 1e-5),
     "a cone on a soft base": (
@@ -49,10 +45,9 @@ CONTACTS = {  # what was wrong: the contact, its tolerance, and the tighter one
     "two neighbouring grids erred alike": (1.27, {"law": Morse(11.3)}, 1e-4, 1e-6),
     "a sharp edge on a sphere": (100.0, {"profile": Sphere(1e4)}, 1e-3, 1e-5),
     "folds that crept from grid to grid": (77.4, {"profile": Sphere(190)}, 1e-8, 1e-9),
-    "a gap on the axis by polynomials in the radius": (0.3, {"profile": Sphere(10)}, 1e-1, 1e-5),
+    "a gap on the axis by polynomials in the radius": (0.3, {"profile": Sphere(10)}, 1e-1, 1e-3),
     "folds near the axis": (5.0, {"profile": Sphere(30)}, 1e-1, 1e-4),
-    "the same, asked closely": (5.0, {"profile": Sphere(30)}, 1e-5, 1e-7),
-    "four coarse grids agreed under no load": (4.77, {"to_load": 1.94}, 1.7e-3, 1e-6),
+    "four coarse grids agreed under no load": (4.77, {"to_load": 1.94}, 1.7e-3, 1e-5),
 }
 
 
@@ -60,22 +55,15 @@ CONTACTS = {  # what was wrong: the contact, its tolerance, and the tighter one
 def test_estimates_hold_what_a_tighter_tolerance_finds(contact):
     tabor, parts, *tolerances = CONTACTS[contact]
     # The radius at the edge of a step is left out: at pull-off from the tip it is 1.2 times its estimate off.
-    numbers = NUMBERS[:3] if isinstance(parts.get("law"), Dugdale) else NUMBERS
+    numbers = QUANTITIES[:3] if isinstance(parts.get("law"), Dugdale) else QUANTITIES
     rough, fine = (halfspace.trace(tabor, **parts, rtol=rtol) for rtol in tolerances)
     assert rough.met
     assert fine.met
     assert list(rough.events) == list(fine.events)
     assert not rough.unconfirmed
-    found = {
-        name: [(event.estimate(n), fine.event(name).estimate(n)) for n in numbers]
-        for name, event in rough.events.items()
-    }
-    found["energy"] = [(rough.energy, fine.energy)]
-    if rough.margin:
-        found["margin"] = [(rough.margin, fine.margin)]
-    for name, pairs in found.items():
-        for ours, truth in pairs:
-            assert np.isnan(ours.value) or ours.agrees(truth), name
+    assert differing(rough, fine, numbers) == []
+    assert rough.energy.agrees(fine.energy)
+    assert not rough.margin or rough.margin.agrees(fine.margin)
 
 
 def test_the_change_before_the_last_counts_for_a_fifth_on_grids_of_the_half_space():

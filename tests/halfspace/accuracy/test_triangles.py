@@ -1,11 +1,11 @@
 """The half-space by overlapping triangles and by bands of pressure: right within their estimates, whole, refused."""
 
-import itertools
 import json
 import math
 
 import numpy as np
 import pytest
+from agreement import differing
 
 import halfspace
 from fem_adhesion import cli
@@ -13,42 +13,22 @@ from halfspace.accuracy.kernels import KERNELS
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.extrapolated import extrapolated
 from halfspace.errors import InputError
-from halfspace.laws import LENNARD_JONES, Dugdale, Morse
+from halfspace.laws import Dugdale, Morse
 from halfspace.profiles import PARABOLOID, Power, Sphere
 
 STRAIGHT = ("triangles", "bands")
-QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
-
-
-def _numbers(path):
-    """Every number of the events that is not zero by definition, and the energy."""
-    known = {"energy": path.energy}
-    for name, event in path.events.items():
-        asked = [quantity for quantity in QUANTITIES if (name, quantity) != ("zero_load", "load")]
-        known |= {(name, quantity): event.estimate(quantity) for quantity in asked}
-    return {name: estimate for name, estimate in known.items() if not math.isnan(estimate.value)}
-
-
-def _misses(path, truth):
-    """Numbers further from the truth than both estimates allow."""
-    found, known = _numbers(path), _numbers(truth)
-    assert found.keys() == known.keys()
-    return {
-        name: (found[name], true)
-        for name, true in known.items()
-        if not abs(found[name].value - true.value) <= found[name].error + true.error
-    }
 
 
 @pytest.mark.parametrize("kernel", STRAIGHT)
 @pytest.mark.parametrize("tabor", [0.05, 5.0])
 def test_events_are_right_within_their_estimates_and_as_accurate_as_asked(tabor, kernel):
-    truth = halfspace.trace(tabor, rtol=1e-9)
+    truth = halfspace.trace(tabor, rtol=1e-8)
     for rtol in (1e-3, 1e-5):
         path = halfspace.trace(tabor, kernel=kernel, rtol=rtol)
         assert path.met
         assert path.settings["events"]["kernel"] == kernel
-        assert _misses(path, truth) == {}
+        assert differing(path, truth) == []
+        assert path.energy.agrees(truth.energy)
         errors = [abs(path.event(name).load - truth.event(name).load) for name in truth.events if name != "zero_load"]
         estimates = [path.event(name).load_error for name in truth.events if name != "zero_load"]
         assert max(estimates) < 100 * max(errors)
@@ -56,23 +36,18 @@ def test_events_are_right_within_their_estimates_and_as_accurate_as_asked(tabor,
 
 @pytest.mark.parametrize(
     ("law", "profile", "kernel"),
-    [
-        *itertools.product([Morse(3.0)], [PARABOLOID], STRAIGHT),
-        *itertools.product([LENNARD_JONES], [Power(4)], STRAIGHT),
-        (Dugdale(0.1), PARABOLOID, "triangles"),
-    ],
+    [(Morse(3.0), Power(4), "bands"), (Dugdale(0.1), PARABOLOID, "triangles")],
     ids=str,
 )
 def test_other_laws_and_profiles_are_served_by_the_same_grids(law, profile, kernel):
     truth = halfspace.trace(1.0, law=law, profile=profile, rtol=1e-8)
     path = halfspace.trace(1.0, law=law, profile=profile, kernel=kernel, rtol=1e-3)
     assert path.met
-    assert _misses(path, truth) == {}
+    assert differing(path, truth) == []
 
 
-@pytest.mark.parametrize("kernel", STRAIGHT)
-def test_the_whole_curve_is_there_with_its_branches_states_and_stability(kernel):
-    truth, path = halfspace.trace(2.0, rtol=1e-8), halfspace.trace(2.0, kernel=kernel, rtol=1e-4)
+def test_the_whole_curve_is_there_with_its_branches_states_and_stability():
+    truth, path = halfspace.trace(2.0, rtol=1e-7), halfspace.trace(2.0, kernel="triangles", rtol=1e-4)
     assert path.branches("approach").keys() == truth.branches("approach").keys()
     for branch in path.branches("approach"):
         state, true = (of.at(approach=-3.0, branch=branch) for of in (path, truth))

@@ -55,7 +55,6 @@ def hemisphere(area):
 
 BODIES = {
     "half-space": lambda: (half_space_grid(), half_space),
-    "hemisphere": lambda: (hemisphere_grid("projected"), hemisphere("projected")),
     "hemisphere, surface area": lambda: (hemisphere_grid("surface"), hemisphere("surface")),
 }
 

@@ -26,7 +26,7 @@ def test_hertz(edge):
 # --- the cells up to infinity ---
 
 
-@pytest.mark.parametrize("reach", [1.0, 2.0, 100.0])
+@pytest.mark.parametrize("reach", [1.0, 100.0])
 def test_pressures_without_end_in_closed_form(reach):
     """P = (1 + r^2)^(-3/2), whose Hankel transform is e^-k, and its relative with k e^-k: w = 2 int p(k) J_0 dk."""
     body = compliance.to_infinity(compliance.panels(grid.graded(0.0, 0.5, 6.0), 14), 14, reach)
@@ -88,7 +88,7 @@ def test_interpolation_does_not_leap_where_cells_meet():
         assert max(abs(below - at), abs(above - at)) < 1e-7
         leap = operator.interpolation(end - 1e-9)[0] - operator.interpolation(end)[0]
         assert abs(leap @ values) > 1e-4
-    for radius in (0.0, 0.2, 0.46, 0.6, 1.49, 1.7, 3.9, 4.0):
+    for radius in (0.0, 0.46, 0.6, 1.49, 4.0):
         row, slope = operator.continuous(radius)
         assert row.sum() == pytest.approx(1.0, abs=1e-12)
         assert row @ operator.radii == pytest.approx(radius, abs=1e-12)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from agreement import differing
 from scipy.integrate import quad_vec
 from scipy.optimize import minimize_scalar
 from scipy.special import j0
@@ -28,26 +29,21 @@ BODIES = [Layer(2, 0.3), Layer(0.5, 0.4999, "sliding"), Coated(1, 10), Coated(1,
 
 
 @pytest.mark.parametrize("poisson", POISSON)
-@pytest.mark.parametrize("thickness", [0.05, 2.0])
-def test_a_bonded_layer_yields_to_waves_by_its_closed_form(poisson, thickness):
+def test_a_layer_yields_to_waves_by_its_closed_form(poisson):
     x, k = WAVES, 3 - 4 * poisson
     upper = k * np.sinh(2 * x) - 2 * x
-    closed = upper / (k * np.cosh(2 * x) + 2 * x**2 + 5 - 12 * poisson + 8 * poisson**2)
-    assert surface_compliance(Layer(thickness, poisson), x / thickness) == pytest.approx(closed, rel=0, abs=1e-12)
-
-
-def test_a_sliding_layer_yields_by_its_closed_form():
-    x = WAVES
-    closed = (np.cosh(2 * x) - 1) / (np.sinh(2 * x) + 2 * x)
-    for poisson in POISSON:
-        assert surface_compliance(Layer(2, poisson, "sliding"), x / 2) == pytest.approx(closed, rel=0, abs=1e-12)
+    bonded = upper / (k * np.cosh(2 * x) + 2 * x**2 + 5 - 12 * poisson + 8 * poisson**2)
+    sliding = (np.cosh(2 * x) - 1) / (np.sinh(2 * x) + 2 * x)
+    for foundation, closed in (("bonded", bonded), ("sliding", sliding)):
+        found = surface_compliance(Layer(0.05, poisson, foundation), x / 0.05)
+        assert found == pytest.approx(closed, rel=0, abs=1e-12)
 
 
 def test_a_coating_like_its_half_space_is_the_half_space():
     assert surface_compliance(Coated(1, 1.0, 0.3, 0.3), WAVES) == pytest.approx(1, rel=1e-12)
 
 
-@pytest.mark.parametrize("poisson", POISSON)
+@pytest.mark.parametrize("poisson", [0.0, 0.499999])
 def test_a_coating_on_something_stiff_is_a_bonded_layer(poisson):
     """Linearly in the ratio of moduli, by which it is extrapolated."""
     near, nearer = (surface_compliance(Coated(2.0, ratio, poisson, 0.2), WAVES / 2) for ratio in (2e-3, 1e-3))
@@ -85,7 +81,7 @@ def test_images_have_the_kernel_of_hankels_integral(body):
     assert images_of(body).kernel(r, s) == pytest.approx(np.array(wanted), rel=0, abs=1e-6 * abs(scale))
 
 
-@pytest.mark.parametrize("thickness", [0.05, 0.5, 20.0])
+@pytest.mark.parametrize("thickness", [0.05, 20.0])
 def test_a_bell_deflects_a_layer_as_hankels_integral(thickness):
     """P = e^(-r^2) has the transform e^(-k^2/4)/2; cells are longer and shorter than the layer is thick."""
     body = Layer(thickness, 0.3)
@@ -123,20 +119,11 @@ def test_strata_too_unlike_are_refused_with_the_misfit():
         images_of(unlike)
 
 
-REFERENCE = {"pull_off": (-0.095053503, -5.681629017)}  # tabor 1, bonded layer of 2 beta, poisson 0.3: to 1e-9 and 1e-8
-
-
-@pytest.fixture(scope="module")
-def on_layer():
-    return {rtol: trace(1.0, body=Layer(2, 0.3), rtol=rtol) for rtol in (1e-6, 1e-8)}
-
-
-@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
-def test_pull_off_from_a_layer_hits_the_reference(on_layer, rtol):
-    event = on_layer[rtol].events["pull_off"]
-    approach, load = REFERENCE["pull_off"]
-    assert abs(event.approach - approach) <= event.approach_error + 1e-9
-    assert abs(event.load - load) <= event.load_error + 1e-8
+def test_pull_off_from_a_layer_hits_the_reference():
+    """Tabor 1, bonded layer of 2 beta, poisson 0.3: known to 1e-9 and 1e-8."""
+    event, rtol = trace(1.0, body=Layer(2, 0.3), rtol=1e-8).events["pull_off"], 1e-8
+    assert abs(event.approach - -0.095053503) <= event.approach_error + 1e-9
+    assert abs(event.load - -5.681629017) <= event.load_error + 1e-8
     assert event.approach_error <= rtol * 3
     assert event.load_error <= rtol * 6
 
@@ -147,14 +134,8 @@ def test_pull_off_from_a_layer_hits_the_reference(on_layer, rtol):
     ids=["half-space", "layer"],
 )
 def test_bodies_that_are_the_same_have_the_same_events(body, alike):
-    one, other = (trace(1.0, body=made, rtol=1e-6).events for made in (body, alike))
-    assert set(one) == set(other)
-    for name, event in one.items():
-        for quantity in ("approach", "load", "central_gap", "contact_radius"):
-            errors = [getattr(each, f"{quantity}_error") for each in (event, other[name])]
-            assert getattr(event, quantity) == pytest.approx(
-                getattr(other[name], quantity), rel=0, abs=sum(errors), nan_ok=True
-            )
+    one, other = (trace(1.0, body=made, rtol=1e-6) for made in (body, alike))
+    assert differing(one, other) == []
 
 
 def test_a_stiff_coating_is_known_between_its_radii():
@@ -196,10 +177,9 @@ def test_a_layer_goes_over_into_jkrs_as_ln_mu_over_mu_squared():
 
 
 @pytest.mark.parametrize("body", [Layer(2.0, 0.3), SOFT_BETWEEN, Coated(0.1, 100.0)], ids=repr)
-@pytest.mark.parametrize("spacing", [1.14, 1.17])
-def test_images_in_units_of_the_contact_deflect_alike(body, spacing):
+def test_images_in_units_of_the_contact_deflect_alike(body):
     """From the least contact to one that is wider than was planned; the rule for long cells is that of the widest."""
-    images = images_of(body, spacing)
+    images = images_of(body)
     rounded = 1e-15 * np.abs(images.strengths).sum()  # up to 1e6 each, of either sign
     unit = compliance.panels(grid.graded(1.0, 0.1, 20.0, growth=3.0), 8)
     pressure = np.exp(-(unit.radii**2))
