@@ -11,11 +11,21 @@ from importlib.metadata import version
 import pytest
 from whole_runs import ROOT
 
-from fem_adhesion import cli
-
 pytestmark = pytest.mark.skipif(int(version("setuptools").split(".")[0]) < 77, reason="the build needs setuptools 77")
 BUILD = "from setuptools import build_meta as b; b.build_sdist('dist'); b.build_wheel('dist')"
-RUN = "import fem_adhesion, sys; from fem_adhesion import cli; print(fem_adhesion.__file__); sys.exit(cli.main())"
+RUN = """
+import sys
+import fem_adhesion
+from fem_adhesion import cli
+for command in cli.COMMANDS:
+    try:
+        cli.main([command.name, "--help"])
+    except SystemExit as ended:
+        assert ended.code == 0, command
+code = cli.main(["formulas", "--out", "formulas"])
+print(fem_adhesion.__file__)
+sys.exit(code)
+"""
 
 
 def tracked():
@@ -68,10 +78,7 @@ def test_every_command_runs_from_the_wheel_alone(built, tmp_path):
         inside = set(wheel.namelist())
         wheel.extractall(tmp_path / "site")
     assert {name for name in tracked() if name.startswith(("halfspace/", "fem_adhesion/"))} <= inside
-    for arguments in (*([command.name, "--help"] for command in cli.COMMANDS), ["formulas", "--out", "formulas"]):
-        run = [sys.executable, "-c", RUN, *arguments]
-        done = subprocess.run(
-            run, cwd=tmp_path, env={"PYTHONPATH": str(tmp_path / "site")}, capture_output=True, text=True
-        )
-        assert done.returncode == 0, done.stderr
-        assert done.stdout.startswith(str(tmp_path / "site"))
+    environment, run = {"PYTHONPATH": str(tmp_path / "site")}, [sys.executable, "-c", RUN]
+    done = subprocess.run(run, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1].startswith(str(tmp_path / "site"))

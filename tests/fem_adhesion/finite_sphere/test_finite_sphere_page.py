@@ -1,6 +1,7 @@
 """The finite sphere's page: its answer, chart and files, and the yield of the body that is taken out of the jumps."""
 
 import math
+import sys
 from dataclasses import replace
 from math import log, pi
 
@@ -17,7 +18,7 @@ from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CRITICAL, MODELS, R
 from fem_adhesion.finite_sphere.chart import contour, in_plane, safe_from
 from fem_adhesion.finite_sphere.page import SHOWN
 from fem_adhesion.finite_sphere.study import Study, plan
-from fem_adhesion.finite_sphere.table import CAUSES, DeviationRow, borders, rows, write_tables
+from fem_adhesion.finite_sphere.table import CAUSES, NO_PARQUET, DeviationRow, borders, rows, write_tables
 from halfspace.elastic import grid
 from halfspace.values import Estimate
 
@@ -246,16 +247,29 @@ def test_each_cause_compares_the_models_that_differ_by_it(distinct):
     assert seen == set(MADE_OF)
 
 
-def test_the_csv_holds_each_number_with_its_error(distinct, tmp_path):
-    write_tables(distinct.rows, tmp_path)
-    for row, line in zip(distinct.rows, rows_of(tmp_path / "finite_sphere.csv"), strict=True):
+TEXTS = ("cause", "quantity", "unit", "status", "reason", "kind")
+
+
+def test_csv_and_parquet_hold_each_number_with_its_error(distinct, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    assert write_tables(distinct.rows, tmp_path) == ""
+    lines = rows_of(tmp_path / "finite_sphere.csv")
+    plain = [{name: x if name in TEXTS else float(x) if x else None for name, x in line.items()} for line in lines]
+    assert parquet.read_table(tmp_path / "finite_sphere.parquet").to_pylist() == plain
+    for row, line in zip(distinct.rows, lines, strict=True):
         for name in ("value", "baseline", "half_space", "deviation"):
             number = getattr(row, name)
             assert (float(line[name]), float(line[f"{name}_error"])) == (number.value, number.error), name
         assert (float(line["tabor"]), float(line["radius_ratio"])) == (row.tabor, row.radius_ratio)
         assert line["poisson"] == ("" if row.poisson is None else str(row.poisson))
-        texts = ("cause", "quantity", "unit", "status", "reason", "kind")
-        assert [line[name] for name in texts] == [getattr(row, name) for name in texts]
+        assert [line[name] for name in TEXTS] == [getattr(row, name) for name in TEXTS]
+
+
+def test_without_the_library_the_csv_alone_is_written(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert write_tables([], tmp_path) == NO_PARQUET
+    assert [file.name for file in tmp_path.iterdir()] == ["finite_sphere.csv"]
 
 
 def drawn(results, stem):

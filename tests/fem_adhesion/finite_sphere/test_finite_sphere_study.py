@@ -13,7 +13,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from page_tables import rows_of
 from processes import alive, wait_until
 
 import halfspace
@@ -39,14 +38,9 @@ from fem_adhesion.finite_sphere.fit import leading_terms
 from fem_adhesion.finite_sphere.page import all_tables
 from fem_adhesion.finite_sphere.study import TABORS, Study, plan, run
 from fem_adhesion.finite_sphere.table import (
-    COLUMNS,
-    NO_PARQUET,
-    TEXTS,
-    UNITS,
     DeviationRow,
     Samples,
     rows,
-    write_tables,
 )
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
@@ -234,11 +228,9 @@ def test_two_tolerances_have_a_file_each(tmp_path):
         study.put(asdict(case), to_plain(solved(case, pull_off_load=(-5.0 - number, 0.1))))
     found = run((loose, tight), opened(tmp_path, resume=True), jobs=1, work=lambda _: pytest.fail("worked"))
     assert [record.values["pull_off_load"].value for record in found] == [-5.0, -6.0]
-    names = {study.path(asdict(replace(SphereCase("sphere", 1.0, 30.0, 0.3), **{name: 7.0}))) for name in INPUTS}
-    assert len(names) == len(INPUTS)
-
-
-INPUTS = ("tabor", "radius_ratio", "poisson", "rtol")
+    inputs = ("tabor", "radius_ratio", "poisson", "rtol")
+    names = {study.path(asdict(replace(SphereCase("sphere", 1.0, 30.0, 0.3), **{name: 7.0}))) for name in inputs}
+    assert len(names) == len(inputs)
 
 
 def test_a_directory_in_use_is_refused_and_left_alone(tmp_path):
@@ -303,25 +295,6 @@ def test_the_yield_of_the_body_is_taken_out_of_the_jumps():
     assert row.value.value == pytest.approx(-3 + 0.5 * compliance)
     assert row.value.error == pytest.approx(1e-3 + 1e-2 * compliance + 0.5 * inexact)
     assert row.half_space.value == -3
-
-
-def test_csv_and_parquet_hold_the_same_table(tmp_path):
-    parquet = pytest.importorskip("pyarrow.parquet")
-    assert write_tables(rows(study_records()), tmp_path) == ""
-    text = rows_of(tmp_path / "finite_sphere.csv")
-    for line in text:
-        for name in COLUMNS:
-            if name not in TEXTS:
-                line[name] = float(line[name]) if line[name] else None
-    assert parquet.read_table(tmp_path / "finite_sphere.parquet").to_pylist() == text
-    assert len(text) == 4 * len(UNITS)
-
-
-def test_without_the_library_the_csv_alone_is_written(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    assert write_tables(rows(study_records()), tmp_path) == NO_PARQUET
-    assert [file.name for file in tmp_path.iterdir()] == ["finite_sphere.csv"]
 
 
 # --- the fits ---

@@ -158,11 +158,11 @@ def test_there_is_no_sphere_factor_outside(python, inputs):
 def states():
     """Rows (3,000, 4) of approach, Tabor, whether unloading, load over that of the pull-off."""
     random, rows = np.random.default_rng(1), []
-    for mu in np.exp(random.uniform(np.log(0.01), np.log(300), 20)).tolist():
+    for mu in np.exp(random.uniform(np.log(0.01), np.log(300), 10)).tolist():
         curve, least = atlas.curve(mu), atlas.pull_off(mu).load
         stable = {name: ends for name, ends in curve.branches("approach").items() if not name.startswith("unstable")}
         for name, (first, last) in stable.items():
-            approach = random.uniform(max(first, -4 * (1 + mu)), last, 160 // len(stable))
+            approach = random.uniform(max(first, -4 * (1 + mu)), last, 320 // len(stable))
             load = curve.at(approach=approach, branch=name).load
             row = np.column_stack([approach, 0 * load + mu, 0 * load + (name != "separated"), load / -least])
             rows.append(row[load < 5])
