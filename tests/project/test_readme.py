@@ -214,5 +214,6 @@ def test_the_example_of_a_help_text_can_be_run(name, capsys):
     with pytest.raises(SystemExit):
         cli.main([name, "--help"])
     shown = " ".join(capsys.readouterr().out.split())
+    assert not re.search("None|False", shown), "defaults are told in words"
     example = re.search(r"example: (fem-adhesion .*)$", shown)[1]
     assert callable(cli.make_parser().parse_args(shlex.split(example)[1:]).run)

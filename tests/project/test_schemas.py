@@ -12,6 +12,7 @@ from synthetic_curves import synthetic
 from whole_runs import COMPARE, GREENWOOD, ROOT
 
 from fem_adhesion import cli
+from fem_adhesion.common.record import SCHEMA, read
 from fem_adhesion.fitting.model import Apparatus, Other
 from halfspace import atlas
 
@@ -92,6 +93,21 @@ def require_explained(section, folder):
     assert sorted(own.keys() - used) == []
 
 
+def require_record(folder, *lines):
+    """Each file says how it is made again, with which options and versions, but stress and what is to be filled in."""
+    files = [file for kind in ("json", "csv") for file in folder.rglob(f"*.{kind}")]
+    files = [file for file in files if file.parent.name not in ("cases", "sheets") and file.name != "st.csv"]
+    for file in (file for file in files if not file.name.endswith("-metadata.json")):
+        found = read(file)
+        assert found.keys() >= {"schema", "command", "versions", "scene", "options", "units"}, file
+        assert found["schema"] == SCHEMA
+        assert found["versions"].keys() >= {"python", "fem-adhesion", "numpy"}
+        (line,) = (line for line in lines if shlex.split(found["command"])[1:] == shlex.split(line))
+        words = shlex.split(line)
+        if "--rtol" in words:
+            assert found["options"]["rtol"] == float(words[words.index("--rtol") + 1])
+
+
 def written(folder):
     """What the lines need: two force curves, and a table for the benchmark."""
     truth = Apparatus(50e-9, 5e9, 0.05, 0.3e-9, 0.0, 2.0)
@@ -110,9 +126,11 @@ def test_each_key_of_a_file_is_explained_and_no_other(section, tmp_path, monkeyp
     given.mkdir(), made.mkdir()
     written(given)
     monkeypatch.chdir(made)
-    for line in LINES[section]:
-        assert cli.main(shlex.split(line.format(given=given))) == 0
+    lines = [line.format(given=given) for line in LINES[section]]
+    for line in lines:
+        assert cli.main(shlex.split(line)) == 0
     require_explained(section, made)
+    require_record(made, *lines)
 
 
 @pytest.mark.parametrize("section", WHOLE)
@@ -120,3 +138,4 @@ def test_each_column_of_a_study_is_explained_and_no_other(section, whole):
     run = whole(WHOLE[section])
     assert run.code == 0, run.err
     require_explained(section, run / "")
+    require_record(run / "", WHOLE[section].removeprefix("fem-adhesion "))

@@ -1,5 +1,4 @@
 import os
-import re
 import subprocess
 import sys
 from dataclasses import fields
@@ -21,13 +20,10 @@ from halfspace.laws import Morse
     [
         ("--tabor 0", "tabor = 0 is outside 0 < tabor"),
         ("--tabor nan", "tabor = nan"),
-        ("--tabor 1 inf", "tabor = inf"),
         ("--tabor", "argument --tabor: expected at least one argument"),
         ("--tabor soft", "invalid float value: 'soft'"),
         ("--poisson 0.5", "poisson = 0.5 is outside 0 <= poisson < 0.5"),
-        ("--poisson -0.1", "poisson = -0.1"),
         ("--rtol 1e-10", "rtol = 1e-10 is outside 1e-9 <= rtol <= 0.1"),
-        ("--rtol nan", "rtol = nan"),
         ("--json /no/such/folder/record.json", "cannot be written"),
         ("--json .", "is a directory; give the name of a file"),
     ],
@@ -50,8 +46,7 @@ def test_an_output_that_cannot_be_is_refused_before_any_work(command, tmp_path, 
     for work in ("speed.study.measure", "greenwood.study.compute"):
         monkeypatch.setattr(f"fem_adhesion.{work}", lambda *_, **__: pytest.fail("work was begun"))
     (tmp_path / "precious").write_text("kept")
-    for out, message in ((tmp_path, "use --force"), ("/no/such/place", "cannot be written")):
-        refused(command, "--out", out, words=message)
+    refused(command, "--out", tmp_path, words="use --force")
     assert [file.name for file in tmp_path.iterdir()] == ["precious"]
 
 
@@ -65,10 +60,7 @@ def test_files_and_directories_have_the_usual_modes(tmp_path):
         assert (tmp_path / name).stat().st_mode & 0o777 == mode & ~mask
 
 
-HELPS = [[], ["curve"]]
-
-
-@pytest.mark.parametrize("command", HELPS, ids=lambda words: " ".join(words) or "all")
+@pytest.mark.parametrize("command", [[], ["curve"]], ids=["all", "curve"])
 def test_help_does_not_load_the_solvers(command):
     """Nothing heavy is loaded, so that help answers at once on any machine."""
     code = (
@@ -102,28 +94,9 @@ def test_a_command_keeps_blas_to_one_thread_unless_told():
     assert not _threads_of("words", OMP_NUM_THREADS="2")[1]
 
 
-@pytest.mark.parametrize(
-    ("command", "said"),
-    [
-        ("compare", ["(default: 0.05 0.5 1 2 3 5)", "0.3 unless given", "(default: 1e-05)"]),
-        (
-            "curve",
-            ["contact:", "body and solver:", "(default: 5.0)", "0.3 unless given with --tabor", "20 unless given"],
-        ),
-        ("assess", ["contact:", "results:"]),
-    ],
-)
-def test_help_shows_groups_and_defaults_in_words(command, said, capsys):
-    with pytest.raises(SystemExit, match="0"):
-        cli.main([command, "--help"])
-    text = " ".join(capsys.readouterr().out.split())
-    assert [words for words in said if words not in text] == []
-    assert not re.search("None|False", text)
-
-
-@pytest.mark.parametrize("module", ["fem_adhesion", "fem_adhesion.cli"])
-def test_the_package_runs_as_a_module_and_says_its_version(module):
-    done = subprocess.run([sys.executable, "-m", module, "--version"], capture_output=True, text=True, check=False)
+def test_the_package_runs_as_a_module_and_says_its_version():
+    command = [sys.executable, "-m", "fem_adhesion", "--version"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, f"fem-adhesion {version('fem-adhesion')}\n", "")
 
 
@@ -135,9 +108,7 @@ MATERIAL = "--radius 100nm --modulus 70GPa --poisson 0.17 --work-of-adhesion 0.1
     [
         ("", "--radius, --modulus, --poisson, --work-of-adhesion, --spacing or --hamaker missing"),
         (f"{MATERIAL} --spacing -0.3nm", "spacing = -0.3nm is outside 0 < spacing < inf"),
-        (f"{MATERIAL} --spacing 1nm --tabor 1", "unrecognized arguments: --tabor 1"),
         (f"{MATERIAL} --spacing 1nm --json a.svg --plot other/../a.svg", "is given for two outputs"),
-        (f"{MATERIAL} --hamaker 1nm", "hamaker = 1nm has a unit of the wrong kind, limit: a multiple of J"),
         (
             f"{MATERIAL} --spacing 0.001nm --grip bonded",
             "--grip would have no effect, limit: tabor <= 10, where a finite sphere is solved, and this is 57.74",
@@ -158,7 +129,6 @@ def test_assess_refuses_in_one_line_before_any_work(arguments, message, monkeypa
         (f"curve {MATERIAL} --spacing 1nm --radius -100nm", "radius = -100nm is outside 0 < radius"),
         ("curve --adhesion 1J/m^2", "curve: unrecognized arguments: --adhesion 1J/m^2 (did you mean --work-of-"),
         ("curve --tabor 1 --solver fe", "(did you mean fem?)"),
-        ("compar", "(did you mean compare?)"),
         ("", "required: command"),
     ],
 )

@@ -2,41 +2,12 @@
 
 import csv
 import json
-import shlex
-
-import pytest
 
 from fem_adhesion import cli
 from fem_adhesion.common import page
-from fem_adhesion.common.record import SCHEMA, column, read
+from fem_adhesion.common.record import column, read
 from fem_adhesion.registry import part_from
 from halfspace.laws import Morse
-
-KEYS = {"schema", "command", "versions", "scene", "options", "units"}
-BEAD = "--radius 50um --modulus 2MPa --poisson 0.49 --work-of-adhesion 0.05J/m^2 --spacing 0.3nm"
-
-
-@pytest.mark.parametrize(
-    ("line", "option", "value"),
-    [
-        ("curve --tabor 0.3 --rtol 1e-2 --csv 'a table.csv' --json a.json", "rtol", 1e-2),
-        ("sweep --tabor 0.3 0.4 --rtol 1e-2 --csv a.csv --jobs 1", "tabor", [0.3, 0.4]),
-        ("compare --tabor 0.3 --rtol 1e-2 --json a.json", "rtol", 1e-2),
-        (f"assess {BEAD} --json a.json", None, None),
-    ],
-)
-def test_each_file_of_a_command_has_the_record_that_repeats_it(line, option, value, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert cli.main(shlex.split(line)) == 0
-    written = [file for file in tmp_path.iterdir() if not file.name.endswith("-metadata.json")]
-    assert written
-    for file in written:
-        found = read(file)
-        assert found.keys() >= KEYS
-        assert found["schema"] == SCHEMA
-        assert shlex.split(found["command"]) == ["fem-adhesion", *shlex.split(line)]
-        assert found["options"].get(option) == value
-        assert found["versions"].keys() >= {"python", "fem-adhesion", "numpy"}
 
 
 def test_a_record_has_the_scene_and_the_units_of_its_numbers(tmp_path):

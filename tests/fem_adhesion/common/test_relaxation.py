@@ -28,8 +28,7 @@ def test_simple_relaxation_finds_newtons_state(tabor, relaxation, control):
     assert found.sweeps % USUAL.checked == 0
 
 
-@pytest.mark.parametrize("tabor", [0.5, 2.0])
-@pytest.mark.parametrize("gap", [1.0, 0.0], ids=["apart", "in contact"])
+@pytest.mark.parametrize(("tabor", "gap"), [(0.5, 1.0), (2.0, 0.0)], ids=["apart", "in contact"])
 def test_greenwoods_iteration_finds_newtons_state(tabor, gap):
     """The residual is one sweep's share of the error, so the tolerance is three decades below what is asked."""
     problem = problem_at(tabor, nodes=30)

@@ -18,7 +18,7 @@ from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import Beside, state_at
 from fem_adhesion.report import page as report_page
 from fem_adhesion.report.page import MOST_ROWS, WORDS, Contents, cell, page, read_table
-from fem_adhesion.report.walk import SEEN, _station, walk, walk_data
+from fem_adhesion.report.walk import SEEN, _station, walk
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES
 
@@ -26,7 +26,7 @@ from halfspace.laws import LENNARD_JONES
 @pytest.fixture(scope="module")
 def contents():
     curves = solve(Question(Scene(2.0), "both", 1e-3))
-    return Contents(ENDINGS["agree"], curves, walk(curves), {})
+    return Contents(ENDINGS["agree"], curves, walk(curves, states=20), {})
 
 
 @pytest.fixture(scope="module")
@@ -98,22 +98,10 @@ def test_sections_not_computed_say_how_to(html):
         assert f"<code>{line}</code>, then this with <code>--{name} {name}</code>" in html
 
 
-def test_the_moving_figure_shows_the_path(contents, html):
-    data, walked = data_of(html), contents.walk
-    assert len(data["stations"]) == len(walked.path.points) + len(walked.path.events)
-    shown = {station["name"]: station for station in data["stations"] if station["name"]}
-    for name, event in walked.path.events.items():
-        station = shown[name.replace("_", " ")]
-        assert station["approach"] == pytest.approx(event.approach, abs=2e-3)
-        assert station["load"] == pytest.approx(event.load, abs=2e-3)
-    assert any(not station["stable"] for station in data["stations"])
-    assert data_of(f'id="walk-data">{walk_data(walked, contents.curves)}</script>') == data
-
-
 def test_the_stations_of_a_walk_balance(contents):
     """Both solvers' profiles agree, and the surface rises by what closes the gap: H = -alpha* + mu u^2/2 - rise."""
     walked, mu = contents.walk, contents.walk.scene.tabor
-    for station in walked.stations[::5]:
+    for station in walked.stations[::3]:
         elements, half_space = station.pressure
         assert elements == pytest.approx(half_space, abs=2e-2)
         undeformed = mu * walked.radii[::15] ** 2 / 2 - station.approach
@@ -127,7 +115,6 @@ def test_the_stations_of_a_walk_balance(contents):
     [
         ("--speed", "captions.csv", None, "captions.csv is not there; give the directory that fem-adhesion speed"),
         ("--speed", "captions.csv", b"stem,words\na,b\n", "has the columns stem, words, but not figure; "),
-        ("--speed", "captions.csv", b"figure,words\na,b\n", "has the columns figure, words, but not caption; "),
         ("--hard", "hard.csv", b"name,ended\na,b\n", "has the columns name, ended, but not outcome; "),
         ("--hard", "hard.csv", b"name,outcome\na\n", "line 2: 1 cells, not 2; "),
         ("--hard", "hard.csv", b"name,outcome\n\xff,b\n", "cannot be read as CSV: "),
@@ -282,17 +269,10 @@ def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, content
 # --- the walk ---
 
 
-def test_states_of_the_walk_are_stable_where_the_curve_is(contents, html):
-    path, walked = contents.walk.path, contents.walk
-    stable = dict(zip(path.arclength.tolist(), path.stable.tolist(), strict=True))
-    between = [station for station in walked.stations if not station.name]
-    assert [station.stable for station in between] == [stable[station.arclength] for station in between]
-    assert [one["stable"] for one in data_of(html)["stations"]] == [station.stable for station in walked.stations]
-
-
 def test_each_number_of_a_station_stands_under_its_name(contents, html):
     walked = contents.walk
     shown, path = data_of(html)["stations"], walked.path
+    assert {one["name"] for one in shown} == {"", *(name.replace("_", " ") for name in path.events)}
     stable = dict(zip(path.arclength.tolist(), path.stable.tolist(), strict=True))
     for one, station in zip(shown, walked.stations, strict=True):
         assert one["stable"] == station.stable == (station.stable if station.name else stable[station.arclength])
