@@ -1,22 +1,14 @@
-"""Over the whole space of inputs: finite results or a documented refusal, balance, energy, bounds and monotony."""
+"""Over the whole space of inputs: finite results, balance, energy, bounds and monotony."""
 
 import math
 
 import numpy as np
-from facets import far_reaction
 from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
-from references import strain_energy
-from skfem import ElementQuadP
 
 import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Scene
-from fem_adhesion.elasticity.cells import stiffness_of
-from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.space import Space
-from fem_adhesion.materials import Elastic
-from fem_adhesion.mesh.block import block_grid
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
 from halfspace.equilibrium.path import correct
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
@@ -102,23 +94,3 @@ def test_every_contact_with_a_body_is_solved(tabor, poisson, rtol, to_load):
     require_finite(path)
     require_bounds(path)
     require_balance_and_energy(path)
-
-
-@over_inputs(15)
-@given(poisson=poissons, radii=st.lists(st.floats(0.1, 8), min_size=1, max_size=4), degree=st.integers(3, 5))
-@example(poisson=0.499999, radii=[3.1, 0.1, 5.3], degree=3)
-@example(poisson=0.4999, radii=[3.1, 0.1, 5.3], degree=4)
-def test_a_block_holds_any_load_and_stores_its_work(poisson, radii, degree):
-    space = Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(degree))
-    body = condense(space, poisson, stiffness=lambda: stiffness_of(space, [Elastic(poisson)]))
-    r = body.operator.radii
-    pressure = sum(np.where(r < edge, (-1.0) ** i, 0.0) for i, edge in enumerate(radii)) + 1e-3
-    load, deflection = body.operator.weights @ pressure, body.operator.compliance @ pressure
-    scale = body.operator.weights @ np.abs(pressure)
-    # A change of volume meets 1/(1 - 2 nu) times the stiffness: by that much displacements err more than round-off, and
-    # forces found from them once more. At Poisson's ratios from 0.49 to 0.499999 it is 0.1 to 5 times this.
-    rounding = np.finfo(float).eps / (1 - 2 * poisson) ** 2
-    assert abs(far_reaction(body, pressure) - load) <= (1e-9 + 20 * rounding) * scale
-    work = 0.5 * (body.operator.weights * pressure) @ deflection
-    assert abs(strain_energy(body, pressure) - work) <= (1e-9 + 20 * rounding) * scale * np.max(np.abs(deflection))
-    assert work > 0

@@ -113,10 +113,9 @@ def test_all_folds_are_events_in_order_and_hold_the_truth(winding):
     names = ["pull_off", "jump_on", "fold_2", "fold_3", "jump_off", "zero_load"]
     assert list(winding.events) == list(truth.events) == names
     assert winding.event("fold_4") is None
+    assert differing(winding, truth) == []
     for name in names[2:4]:
-        for quantity in ("approach", "load", "central_gap"):
-            ours, exact = (path.event(name).estimate(quantity) for path in (winding, truth))
-            assert abs(ours.value - exact.value) <= ours.error + exact.error <= 1e-5, (name, quantity)
+        assert max(winding.event(name).approach_error, winding.event(name).load_error) < 1e-5
     arclengths = [winding.stages[-1][name].point.arclength for name in names[1:5]]
     assert arclengths == sorted(arclengths)
 
