@@ -259,10 +259,9 @@ def test_dugdales_law_tends_to_maugiss_as_its_steps_narrow():
     np.testing.assert_allclose(off[1:] / off[:-1], 2 ** (-1 / 3), rtol=0.03)
 
 
-@pytest.mark.parametrize(("profile", "tabor"), [(PARABOLOID, 1.0), (Power(1.5), 1.0)], ids=["step", "tip"])
-def test_states_are_known_along_a_curve_of_many_charts(profile, tabor):
+def test_states_are_known_along_a_curve_of_many_charts():
     """A stretch that was traced on one chart is solved for on one; cells towards a tip depend on the nodes in each."""
-    path, fine = (halfspace.trace(tabor, law=Dugdale(0.1), profile=profile, rtol=rtol) for rtol in (1e-4, 1e-5))
+    path, fine = (halfspace.trace(1.0, law=Dugdale(0.1), profile=Power(1.5), rtol=rtol) for rtol in (1e-4, 1e-5))
     folds = [name for name in path.events if name.startswith(("jump", "fold"))]
     assert len(path.branches("approach")) == len(folds) + 1
     for gap in (0.1, 0.7, 2.0):

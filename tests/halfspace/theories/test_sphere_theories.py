@@ -9,7 +9,7 @@ from halfspace.laws import LENNARD_JONES
 from halfspace.theories import closed_forms
 from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
 
-RATIOS = [0.01, 1.0, 5.0, 30.0, 1e3, 1e6]
+RATIOS = [0.01, 5.0, 1e6]
 
 
 def _sigma(h):
@@ -41,7 +41,7 @@ def test_rigid_load_is_the_law_summed_over_the_sphere(rho, whole):
 
 
 @pytest.mark.parametrize("whole", [False, True])
-@pytest.mark.parametrize("rho", [0.1, 1.0, 10.0, 1e4])
+@pytest.mark.parametrize("rho", [0.1, 1e4])
 def test_rigid_pull_off_is_the_least_load(rho, whole):
     body = RigidSphere(rho, whole)
     for load, state in ((body.load, body.pull_off()), (body.surface_load, body.surface_pull_off())):

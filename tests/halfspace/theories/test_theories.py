@@ -114,7 +114,7 @@ def test_gap_around_a_hertz_contact():
     assert closed_forms.hertz_gap(r, a, 2.0) == pytest.approx(2 * (undeformed + load / (np.pi * r)), rel=1e-9)
 
 
-@pytest.mark.parametrize("lam", [1e-6, 1e-3, 0.3, 1.0, 10.0, 100.0])
+@pytest.mark.parametrize("lam", [1e-6, 0.3, 100.0])
 def test_maugis_equations_as_he_printed_them(lam):
     """In his variables A, m, P, Delta, normalised by K = 4 E*/3 and pi dgamma."""
     theory = MaugisDugdale(lam, tabor=1.3)
@@ -132,7 +132,7 @@ def test_maugis_equations_as_he_printed_them(lam):
     )
 
 
-@pytest.mark.parametrize("lam", [1e-4, 0.1, 1.0, 5.0, 100.0])
+@pytest.mark.parametrize("lam", [1e-4, 1.0, 100.0])
 def test_turning_points_of_maugis_are_minima(lam):
     theory = MaugisDugdale(lam, tabor=1.0)
     pull_off, off = theory.pull_off(), theory.jump_off()
