@@ -154,11 +154,9 @@ def test_the_report_refuses_what_is_no_fit(tmp_path):
         ([str(DATA / "missing")], "missing"),
     ],
 )
-def test_what_the_command_cannot_fit_is_one_line(arguments, words, tmp_path, monkeypatch, capsys):
+def test_what_the_command_cannot_fit_is_one_line(arguments, words, tmp_path, monkeypatch, refused):
     monkeypatch.chdir(tmp_path)
-    assert cli.main(["fit", *arguments, *CONTACT]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert words in line
+    refused("fit", *arguments, *CONTACT, words=words)
     assert not list(tmp_path.iterdir())
 
 
