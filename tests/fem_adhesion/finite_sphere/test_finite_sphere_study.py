@@ -6,13 +6,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from cheap_study import CASES, cheap, opened
 from processes import alive, wait_until
 
 import halfspace
@@ -49,31 +49,11 @@ from halfspace.theories.closed_forms import JKR_PULL_OFF
 from halfspace.theories.exact_sphere import JKRSphere
 from halfspace.values import Estimate
 
-CASES = [SphereCase("half_space", tabor, rtol=1e-2) for tabor in (0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0)]
-
-
-def cheap(case):
-    """Half-space at a low accuracy; notes in the directory STUDY_LOG that it was begun.
-
-    From the third on it then waits for the file STUDY_GATE, if there is to be one.
-    """
-    if log := os.environ.get("STUDY_LOG"):
-        (Path(log) / f"{case.tabor:g}-{time.monotonic_ns()}").touch()
-    gate = os.environ.get("STUDY_GATE")
-    while gate and case not in CASES[:3] and not Path(gate).exists():
-        time.sleep(0.01)
-    return finite_sphere_cases.compute(case)
-
 
 @cache
 def remembered(case):
     """Solved for once: what a store does with a record is the same for one that was solved for again."""
     return finite_sphere_cases.compute(case)
-
-
-def opened(directory, **options):
-    """Store of code that does not change."""
-    return open_store(directory, "code of the test", **options)
 
 
 def solved(case, **values):
@@ -111,8 +91,8 @@ def test_inputs_out_of_range_are_refused(inputs, message):
 def start_study(directory, log):
     """Process that computes CASES on two workers, which wait for ever in the fourth and fifth."""
     code = (
-        "from pathlib import Path; import test_finite_sphere_study as t; "
-        f"t.run(t.CASES, t.opened(Path({str(directory)!r})), jobs=2, work=t.cheap)"
+        "from pathlib import Path; from fem_adhesion.finite_sphere.study import run; import cheap_study as c; "
+        f"run(c.CASES, c.opened(Path({str(directory)!r})), jobs=2, work=c.cheap)"
     )
     path = os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])  # the helpers, too
     environment = {**os.environ, "PYTHONPATH": path, "STUDY_LOG": str(log), "STUDY_GATE": str(log.parent / "never")}
