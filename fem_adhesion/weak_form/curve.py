@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from fem_adhesion.scene import Scene, require_scene
 from fem_adhesion.weak_form.body import Array, box, discretise
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.newton import Equilibrium, at_gap, even, newton
+from fem_adhesion.weak_form.newton import Equilibrium, even, newton
 from halfspace.equilibrium.events import Event, Tolerance, WithEvents, is_fold, points_of, tolerance_told
 from halfspace.errors import InputError, NotConverged, tried
 from halfspace.laws import LENNARD_JONES
@@ -70,7 +70,11 @@ class Path(Valued):
     def at(self, s: float, y: Array) -> Point:
         """Point at a place, from a state nearby."""
         gap = self.contact.law.edge - min(s, 0.0)
-        return Point(s, newton(self.contact, y, at_gap(self.contact, radius_at(s), gap)))
+
+        def there(y: Array) -> float:
+            return float(even(self.contact.body, y[:-1])(radius_at(s)))
+
+        return Point(s, newton(self.contact, y, lambda y: (gap - there(y), there)))
 
     def follow(self, approach: float, to_load: float, longest: float = 0.1) -> list[Point]:
         """Points from an approach of separated surfaces, through every fold, to a compressive load.
@@ -273,7 +277,6 @@ def require_served(scene: Scene, rtol: float, to_load: float) -> None:
         "body": (scene.body.name, scene.body.name == "half-space", "half-space"),
         "profile": (scene.shape, scene.shape == Paraboloid(), "paraboloid"),
         "law": (scene.law, scene.law == LENNARD_JONES, "the 3-9 law"),
-        "material": (scene.material, not scene.material.finite, "small strain"),
     }
     for name, (value, served, limit) in counts.items():
         if not served:

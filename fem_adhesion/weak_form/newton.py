@@ -100,15 +100,6 @@ def at_load(contact: Contact, load: float) -> Condition:
     return lambda y: (load - contact.load(y), lambda change: contact.load_rate(y, change))
 
 
-def at_gap(contact: Contact, radius: float, gap: float) -> Condition:
-    """The condition that the gap at a radius is given."""
-
-    def there(y: Array) -> float:
-        return float(even(contact.body, y[:-1])(radius))
-
-    return lambda y: (gap - there(y), there)
-
-
 def newton(contact: Contact, y: Array, condition: Condition, most: int = 20, closing: float = 0.75) -> Equilibrium:
     """Equilibrium with one more condition, from a state nearby; NotConverged if there is none after `most` steps.
 
