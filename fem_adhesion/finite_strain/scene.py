@@ -220,16 +220,16 @@ def raised(event: Located, problem: FiniteStrainProblem) -> Located | Unsolved:
     """
     found: Located | Unsolved = event
     start, done, part = transfer(event.problem, event.point.x, problem.stretched(0.0)), 0.0, problem.stretch
-    least = problem.held.settings.smallest_part
+    how = problem.held.settings
     while found and done < problem.stretch:
-        last = done + part >= (1 - least) * problem.stretch
+        last = done + part >= (1 - how.smallest_part) * problem.stretch
         target = problem if last else problem.stretched(done + part)
-        farther = relocate(found, target, start, metric_for(target))
+        farther = relocate(found, target, start, metric_for(target), how.raised_points)
         if farther:
             found, start, done = farther, farther.point.x, target.stretch
             continue
         part /= 2
-        if part < least:
+        if part < how.smallest_part:
             approach, load = event.point.observables[[APPROACH, LOAD]]
             return Unsolved(
                 f"the event at approach {approach:.6g} eps, load {load:.6g} R dgamma is lost at beta/R = "

@@ -309,20 +309,22 @@ def hermite(problem: Traceable, a: Point, b: Point, t: float, metric: Metric) ->
     return np.asarray(a.x + problem.longest_step(a.x, x - a.x) * (x - a.x))
 
 
-def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located | Unsolved:
+def relocate(
+    event: Located, problem: Traceable, start: Array, metric: Metric, points: int = LOCATE.points
+) -> Located | Unsolved:
     """Solve for an event again on another discretisation, from a state transferred to it.
 
-    Unsolved if the event does not exist near `start` on that discretisation.
+    Unsolved if the event does not exist near `start` on that discretisation, or within so many points along the path.
     """
     condition = event.condition
     if isinstance(condition, Steepest):
         nearby = same_place(event.point, problem, start, metric)
         return nearby and steepest_from(problem, nearby, metric, LOCATE.widths[1:])
     found = _solved(problem, condition, start, metric, event.point, LOCATE.nearby)
-    return found if found and found.slope * event.slope > 0 else _searched(event, problem, start, metric)
+    return found if found and found.slope * event.slope > 0 else _searched(event, problem, start, metric, points)
 
 
-def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located | Unsolved:
+def _searched(event: Located, problem: Traceable, start: Array, metric: Metric, most: int) -> Located | Unsolved:
     """Solve for an event farther off: in the plane across the path first, then along it to beyond the event."""
     condition, here = event.condition, same_place(event.point, problem, start, metric)
     if not here:
@@ -336,7 +338,7 @@ def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) 
         return _changes(way, point, condition) or point.arclength - way.arclength > LOCATE.farthest
 
     steps = Steps(first=min(LOCATE.past * abs(ahead), LOCATE.nearby), longest=LOCATE.nearby)
-    points = tried(follow, problem, way, metric, beyond, steps=steps, max_points=LOCATE.points)
+    points = tried(follow, problem, way, metric, beyond, steps=steps, max_points=most)
     if isinstance(points, Unsolved):
         return points
     if not _changes(way, points[-1], condition):

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from scenes import hemisphere
 
+import halfspace
 from fem_adhesion import LinearElastic, NeoHookean, Scene, convergence
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.bodies.held import Hemisphere
@@ -25,8 +26,8 @@ from fem_adhesion.finite_strain.settings import USUAL
 from fem_adhesion.finite_strain.traction import Convention
 from halfspace.accuracy.standing import Standing
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import Chart, moved, placed, transfer, undeformed_radius
-from halfspace.equilibrium.conditions import FOLD, Located
+from halfspace.equilibrium.charts import Chart, metric_for, moved, placed, transfer, undeformed_radius
+from halfspace.equilibrium.conditions import FOLD, Located, relocate
 from halfspace.equilibrium.contact import APPROACH
 from halfspace.equilibrium.search import energy_released
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
@@ -222,6 +223,15 @@ def test_a_tiny_sphere_is_traced_until_all_in_contact():
     R, last = np.sqrt(radius_ratio / tabor), path.segments[-1]
     assert undeformed_radius(last.problem, last.points[-1]) < R
     assert path.load[-1] >= LITTLE or undeformed_radius(last.problem, last.points[-1]) > FARTHEST * R
+
+
+def test_a_search_for_an_event_ends_after_the_points_allowed():
+    """Pull-off at twice the Tabor parameter takes more than two of them."""
+    event = halfspace.trace(1.0, rtol=1e-3).stages[-1]["pull_off"]
+    problem = replace(event.problem, tabor=2.0)
+    start, metric = event.point.x, metric_for(problem)
+    assert not relocate(event, problem, start, metric, 2)
+    assert relocate(event, problem, start, metric, USUAL.raised_points)
 
 
 def test_an_event_that_moved_on_its_mesh_keeps_it():
