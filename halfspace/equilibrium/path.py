@@ -236,7 +236,7 @@ def _advance(
     least = problem.interface.operator.least_radius
     if not new or new.observables[CONTACT_RADIUS] < least:
         return new and Unsolved(f"the contact radius is below {least:.3g} beta, the chart's least")
-    if _turn(point, new, metric) > 2 * steps.turn:
+    if max(_turn(point, new, metric), _aside(point, new, metric)) > 2 * steps.turn:
         return Unsolved("the path turns too sharply")
     if any(_hides_turning_points(point, new, k, metric) for k in (APPROACH, LOAD)):
         return Unsolved("the step may leap over a pair of folds")
@@ -289,6 +289,15 @@ def least_slope(first: float, last: float, mean: float) -> float:
 def _turn(a: Point, b: Point, metric: Metric) -> float:
     """Angle between two tangents in radians."""
     return math.acos(min(1.0, max(-1.0, metric.along(a, b))))
+
+
+def _aside(a: Point, b: Point, metric: Metric) -> float:
+    """Largest angle in radians between the tangents at two points and the straight line from one to the other.
+
+    Beyond a sharp turn, as at the load's least on flat tips, a path taken to go back looks straight by its tangents.
+    """
+    rates, way = np.array([a.rates, b.rates])[:, :3], (b.observables - a.observables)[:3]
+    return math.acos(np.clip(rates @ (metric.weights[:3] * way) / metric.distance(a, b), -1.0, 1.0).min())
 
 
 def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -> float:
