@@ -163,7 +163,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
         _standing(scene, twin, to_load) if level and (body.other_cells or scene.scales.step_gap) else None,
         _standing(scene, coarser, to_load) if level else None,
         ErrorRule(
-            body.left * step * REMAINING,
+            step * REMAINING,
             parts=(GRIDS.before, 1.0),
             along=True,
             steps=scene.scales.steps,

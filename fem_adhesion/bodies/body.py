@@ -68,7 +68,6 @@ class Known:
     file: Path | None = None  # its mesh, if it is given; other bodies are meshed anew for every contact radius
     checked_by: SolverName | None = None  # solver without finite elements, see `fem_adhesion.crosscheck.references`
     other_cells: bool = False  # whether only other cells tell what its cells leave, not a degree more
-    left: float = 1.0  # part of a change of the numbers that may be left, in what usually is
 
 
 @dataclass(frozen=True, kw_only=True)

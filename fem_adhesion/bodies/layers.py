@@ -44,9 +44,6 @@ class Stratified(Strata, Body):
     """Strata on a rigid base or on a half-space; E* is that of the first."""
 
     checked_by = "half-space"
-    # With what is usually left of a change 3 of 511 numbers of 33 random scenes were outside their estimates, worst
-    # 1.96; with twice as much one is, by 1.33. A twin would hold that too, in half as much time again.
-    left = 2.0
 
     looks: ClassVar[str] = "elastic layer"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Protocol
 
@@ -80,6 +80,10 @@ class Standing(WhereAsked):
             return 0.0, length, self.body.standing(0.0)
         return radius - near, radius + near, self.body.standing(radius)
 
+    def __call__(self, event: Located) -> Chart:
+        """Chart for a state, as on the grids before one that follows the contact if it had to."""
+        return self._following(event) if event.followed else super().__call__(event)
+
     def moved(self, event: Located, problem: Traceable) -> Located | Unsolved:
         """Solve for an event on a grid that stands still, or near to it on one that follows the contact.
 
@@ -90,7 +94,14 @@ class Standing(WhereAsked):
         found = moved(event, problem)
         if found and event.condition.stationary and not 1 / ALIKE < found.slope / event.slope < ALIKE:
             found = Unsolved("it is the grid that makes the path turn here; take a smaller rtol")
-        return found or settled(event, self.near or self.everywhere, moved)
+        if found and not event.followed:
+            return found
+        found = found or settled(event, self._following, moved)
+        return found and replace(found, followed=True)
+
+    @property
+    def _following(self) -> Stage:
+        return self.near or self.everywhere
 
     @cached_property
     def everywhere(self) -> Stage:

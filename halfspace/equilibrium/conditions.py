@@ -120,7 +120,8 @@ class Located(Valued):
     """A root of a condition on one discretisation's path.
 
     The point has converged; the slope is the derivative along the path of what vanishes, to start a root finder from.
-    By so much arclength, `left`, the root is not known: that of a rate is where it vanishes but for rounding.
+    By so much arclength, `left`, the root is not known: that of a rate is where it vanishes but for rounding. It is
+    `followed` if only grids that follow the contact have it where it is.
     """
 
     condition: Condition
@@ -128,6 +129,7 @@ class Located(Valued):
     point: Point
     slope: float
     left: float = 0.0
+    followed: bool = False
 
     @property
     def rounding(self) -> Array:

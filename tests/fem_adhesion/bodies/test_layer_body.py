@@ -74,12 +74,15 @@ def test_both_solvers_have_the_same_events_on_a_layer(scene, rtol):
 
 @pytest.mark.parametrize("body", [HalfSpace(), Layer(2.0, poisson=0.3)], ids=str)
 def test_under_a_small_sphere_a_degree_leaves_a_tenth_where_the_surface_ends(body):
-    """On longer cells there each degree left a half: the half-space's radius was 1.5 times outside its estimate."""
+    """On longer cells there each degree left a half: the half-space's radius was 1.5 times outside its estimate.
+
+    On cells as deep below as at the contact edge it would be 0.8 times its estimate off.
+    """
     scene = Scene(1.0, body, Sphere(3.0))
     event, other = (
         path.event("zero_load") for path in (traced(scene, 1e-4), halfspace.trace(**scene.for_half_space, rtol=1e-6))
     )
-    assert abs(event.contact_radius - other.contact_radius) <= event.contact_radius_error
+    assert abs(event.contact_radius - other.contact_radius) <= event.contact_radius_error / 2
     assert abs(event.approach - other.approach) < 3e-7
 
 

@@ -14,7 +14,10 @@ SLIDING = Layer(0.0816, 0.4999, "sliding")
 CONTACTS = {  # what was wrong: the contact, its tolerance, and the tighter one
     "a range of ten spacings is no power": (1.0, {"law": Exponential(0.1)}, 1e-5, 1e-7),
     "a range so short that points leapt over it": (1e-6, {"law": Exponential(50)}, 1e-4, 1e-6),
+    "another in which there is one point": (0.03, {"law": Exponential(20)}, 1e-3, 1e-5),
+    "another, asked closely": (0.01, {"law": Exponential(40)}, 1e-6, 1e-8),
     "a step on cells that grew threefold": (1.0, {"law": Dugdale(0.1)}, 1e-4, 1e-6),
+    "the same on a sphere": (1.0, {"law": Dugdale(0.2), "profile": Sphere(30)}, 1e-4, 1e-6),
     "the same without short cells at a tip": (3.0, {"law": Dugdale(0.2), "profile": Hyperboloid(0.3)}, 1e-5, 1e-7),
     "folds lost outside the step": (50.0, {"law": Dugdale(0.2), "profile": RoundedPunch(2.0)}, 1e-4, 1e-6),
     "gaps of 1e27 eps far out": (3.0, {"profile": Power(8)}, 1e-5, 1e-7),
@@ -47,6 +50,7 @@ CONTACTS = {  # what was wrong: the contact, its tolerance, and the tighter one
     "folds that crept from grid to grid": (77.4, {"profile": Sphere(190)}, 1e-8, 1e-9),
     "a gap on the axis by polynomials in the radius": (0.3, {"profile": Sphere(10)}, 1e-1, 1e-3),
     "folds near the axis": (5.0, {"profile": Sphere(30)}, 1e-1, 1e-4),
+    "the same, asked closely": (5.0, {"profile": Sphere(30)}, 1e-5, 1e-7),
     "four coarse grids agreed under no load": (4.77, {"to_load": 1.94}, 1.7e-3, 1e-5),
 }
 
