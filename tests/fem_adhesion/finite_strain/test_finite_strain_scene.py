@@ -241,11 +241,14 @@ def test_an_event_that_moved_on_its_mesh_keeps_it():
     def problem(radius):
         return SimpleNamespace(interface=interface, surface_state=lambda x: x, made_for=radius)
 
+    def state(at, radius):
+        return SimpleNamespace(problem=at, point=SimpleNamespace(x=radius), followed=False)
+
     stage = Standing(SimpleNamespace(length=0.1, standing=lambda radius: Chart(problem(radius), 1)), None)
     for radius, made_for in ((1.0, 1.0), (1.015, 1.015), (1.009, 1.0)):
-        mesh = stage(SimpleNamespace(problem=problem(0), point=SimpleNamespace(x=radius))).problem
+        mesh = stage(state(problem(0), radius)).problem
         assert mesh.made_for == made_for
-        assert stage(SimpleNamespace(problem=mesh, point=SimpleNamespace(x=1.3))).problem is mesh
+        assert stage(state(mesh, 1.3)).problem is mesh
 
 
 # --- its accuracy ---
