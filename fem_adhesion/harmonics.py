@@ -28,7 +28,7 @@ from halfspace.accuracy.finite_bodies import Made, SizedBody
 from halfspace.accuracy.grids import GRIDS
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
-from halfspace.accuracy.standing import standing
+from halfspace.accuracy.standing import left_between, standing
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import collocated
 from halfspace.elastic.grid import FLAT
@@ -184,7 +184,8 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
         curve = sized_body(scene, Fineness(above.nodes, 10.0), to_load)
         body, other = (sized_body(scene, how, to_load) for how in (above, twin))
         settings = {"nodes": above.nodes, "harmonics": counts(scene, above)}
-        return Rung(curve.curve, (standing(body),), settings, standing(other) if level else None)
+        own, others = standing(body, left_between(above.nodes)), standing(other, left_between(below.nodes))
+        return Rung(curve.curve, (own,), settings, others if level else None)
 
     return climb(rtol, rung, to_load=to_load, most_rungs=2)
 

@@ -13,5 +13,6 @@ falls as 1/mu^2, stays on the same nodes. That is why 100 to 200 unknowns give e
 
 A sphere is not homogeneous. Its compliance on a grid that follows the contact edge is still a smooth function of the
 contact radius: the curve is followed on polynomials, each through some ten radii, made as the contact reaches them. An
-event, whose place the curve tells, has a grid of its own that stands still: one operator.
+event, whose place the curve tells, has a grid of its own that stands still: one operator. Where that grid itself makes
+the path turn, as at the pull-off of a wide contact, the event keeps to grids that follow.
 """

@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from halfspace.accuracy.finite_bodies import CHARTS, SizedBody
+from halfspace.accuracy.finite_bodies import SizedBody
 from halfspace.accuracy.stages import Charted, Discretised
 from halfspace.equilibrium.charts import Chart, Stage, moved, settled, undeformed_radius
 from halfspace.equilibrium.conditions import Located
@@ -18,7 +18,7 @@ from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import Unsolved
 
 NEAR = 0.1  # of the finest cell, that a contact may end away from the place for which a grid was made
-ALIKE = 2.0  # ratio of how fast the path turns on two grids: 0.8 to 1.3 on common ones, 6 to 1e6 where a grid turns it
+ALIKE = 2.0  # ratio of how fast the path turns on two grids: 0.8 to 1.3 on common ones, 3 to 1e6 where a grid turns it
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,7 +45,7 @@ class WhereAsked(Stage):
     @property
     def unknowns(self) -> int:
         """Most unknowns of a chart made so far."""
-        return max(chart.unknowns for *_, chart in self.made)
+        return max((chart.unknowns for *_, chart in self.made), default=0)
 
 
 class Gridded(Protocol):
@@ -66,7 +66,7 @@ class Standing(WhereAsked):
     """A stage on which every event has a grid of its own that stands still, finest where its contact ends.
 
     `along` makes the stage for the points of a curve when it is first asked for. `near` is the stage for an event that
-    is not found on its own grid, that of a curve if it is not given.
+    is not found on its own grid, or that this makes, see `moved`; that of a curve if it is not given.
     """
 
     body: Gridded
@@ -92,11 +92,9 @@ class Standing(WhereAsked):
         wherever the grid was made: an event then stays there on every grid, and its changes tell nothing.
         """
         found = moved(event, problem)
-        if found and event.condition.stationary and not 1 / ALIKE < found.slope / event.slope < ALIKE:
-            found = Unsolved("it is the grid that makes the path turn here; take a smaller rtol")
-        if found and not event.followed:
-            return found
-        found = found or settled(event, self._following, moved)
+        if found and (event.followed or _alike(found, event)):
+            return replace(found, followed=event.followed)
+        found = settled(event, self._following, moved)
         return found and replace(found, followed=True)
 
     @property
@@ -107,6 +105,11 @@ class Standing(WhereAsked):
     def everywhere(self) -> Stage:
         """That for the points of a curve."""
         return self.along()
+
+
+def _alike(found: Located, event: Located) -> bool:
+    """Whether the path turns about as fast where an event was found as where it was before."""
+    return not event.condition.stationary or 1 / ALIKE < found.slope / event.slope < ALIKE
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -124,7 +127,7 @@ class Following(WhereAsked):
         return self.body.around(radius, self.left)
 
 
-def standing(body: SizedBody, left: float = CHARTS.roughly) -> Standing:
+def standing(body: SizedBody, left: float) -> Standing:
     """Stage on which every event has cells of its own: one operator, where a chart that follows the contact takes ten.
 
     Points of the curve share operators interpolated between radii, which leave so much of loads in R dgamma and gaps in

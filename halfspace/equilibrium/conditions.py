@@ -121,7 +121,7 @@ class Located(Valued):
 
     The point has converged; the slope is the derivative along the path of what vanishes, to start a root finder from.
     By so much arclength, `left`, the root is not known: that of a rate is where it vanishes but for rounding. It is
-    `followed` if only grids that follow the contact have it where it is.
+    `followed` if a grid that stands still lost it, or made it, so that it goes on on those that follow the contact.
     """
 
     condition: Condition

@@ -1,9 +1,11 @@
 """Truths that error estimates are held against: the same events on finer grids, graded otherwise, or by another solver.
 
 An event is taken from where it was found and solved for again. Bodies with a length of their own are discretised anew
-around each, on a grid that stands still: neither the window of contact radii nor the interpolation in it is shared.
+around each, on a grid that stands still: neither the window of contact radii nor the interpolation in it is shared. An
+event that such a grid turns, see `Standing.moved`, has one that follows the contact, interpolated to `LEFT`.
 """
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -20,7 +22,7 @@ from halfspace.accuracy.standing import Standing, standing
 from halfspace.elastic import compliance
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels
-from halfspace.equilibrium.charts import moved, placed, trace_charts
+from halfspace.equilibrium.charts import placed, trace_charts
 from halfspace.equilibrium.conditions import FOLD, Condition, Located
 from halfspace.equilibrium.contact import CENTRAL_GAP, OBSERVABLES
 from halfspace.equilibrium.events import is_event, numbered
@@ -29,6 +31,8 @@ from halfspace.errors import required
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
+
+LEFT = 1e-9  # R dgamma or eps
 
 
 def half_space_of(scene):
@@ -57,7 +61,9 @@ def relocated(state, stages):
 
 
 def on(stage, state):
-    return {name: required(moved(event, stage(event).problem)) for name, event in state.items()}
+    """States solved for again on a stage, first on grids that stand still, whatever they were on before."""
+    anew = {name: replace(event, followed=False) for name, event in state.items()}
+    return {name: required(stage.moved(event, stage(event).problem)) for name, event in anew.items()}
 
 
 def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
@@ -69,7 +75,7 @@ def under_surface(tabor, surface, law=LENNARD_JONES):
     """The half-space under a surface that ends."""
     scales, outer = Scales(tabor, law, surface), np.array([surface.end])
     return [
-        standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FLAT, last * surface.end))
+        standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FLAT, last * surface.end), LEFT)
         for nodes, *how, last in ((14, 0.45, 2.5, 1e-7), (16, 0.35, 2.2, 1e-8))
     ]
 
@@ -89,7 +95,7 @@ def _layered(scene, nodes, finest, growth, far, spacing, last):
     last = last * outer if outer == profile.end else np.inf
     first = at_tip(profile, nodes)
     how = finest, growth, np.array([outer]), FLAT, last
-    return standing(SizedBody(scales, make, *how, first=first))
+    return standing(SizedBody(scales, make, *how, first=first), LEFT)
 
 
 FARTHEST = 1e8  # times, to which a tail goes on
@@ -108,7 +114,8 @@ def _panels(nodes, lines):
 
 def elements(scene):
     """The body of a scene by finite elements of high degree."""
-    return [standing(discretise.sized_body(scene, Discretisation(*how))) for how in ((8, 0.55, 2.0), (9, 0.5, 2.2))]
+    hows = ((8, 0.55, 2.0), (9, 0.5, 2.2))
+    return [standing(discretise.sized_body(scene, Discretisation(*how)), LEFT) for how in hows]
 
 
 def endless(scene):
@@ -145,7 +152,7 @@ def along_at_finite_strain(scene):
 def harmonics(scene):
     """The whole sphere by spherical harmonics, whose upper half is the hemisphere in the sliding grip."""
     hows = [Series(nodes, number, finest=0.35, growth=1.8) for nodes, number in ((13, 30.0), (15, 40.0))]
-    return [standing(series(scene, how)) for how in hows]
+    return [standing(series(scene, how), LEFT) for how in hows]
 
 
 def numbers(state):

@@ -456,8 +456,9 @@ def test_the_distance_of_a_model_is_what_it_may_be_at_most():
 
 def test_a_model_that_lacks_a_quantity_is_not_nearest():
     finite = _model("finite sphere", 1.0)
-    told = _verdict(_model("half-space", 1.5), None, finite, _model("JKR", 1.0, on=None))
-    assert "the half-space is nearest, off by up to 50 %" in told
+    models = _model("half-space", 1.5), None, finite, _model("JKR", 1.0, on=None)
+    assert [distance.model for distance in ranked(models, 1e-10)] == ["half-space", "JKR"]
+    assert "the half-space is nearest, off by up to 50 %" in _verdict(*models)
     assert (
         _verdict(_model("half-space", 1.5, on=None), None, finite)
         == "trust the finite sphere; no other model has all its quantities"
