@@ -8,7 +8,7 @@ import pytest
 from scenes import pair
 from scipy.optimize import brentq
 from skfem import ElementQuadP
-from truths import on, standing
+from truths import LEFT, on, standing
 
 import fem_adhesion
 from fem_adhesion.bodies.body import Discretisation
@@ -59,7 +59,7 @@ def test_estimates_of_a_bonded_pair_hold_a_tighter_solution():
     scene = pair(0.3, 10.0, 0.4, 0.45, 3.0, poisson=0.45, grip="bonded")
     path = fem_adhesion.trace(scene, rtol=1e-5)
     finer = Discretisation(path.settings["events"]["degree"] + 2, finest=0.45, growth=2.1, rings=6)
-    truth = on(standing(sized_body(scene, finer)), path.stages[-1])
+    truth = on(standing(sized_body(scene, finer), LEFT), path.stages[-1])
     scale = approach_scale(event.approach for event in path.events.values())
     for name, event in path.events.items():
         values = truth[name].point.observables
