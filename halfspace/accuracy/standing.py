@@ -66,7 +66,7 @@ class Standing(WhereAsked):
     """A stage on which every event has a grid of its own that stands still, finest where its contact ends.
 
     `along` makes the stage for the points of a curve when it is first asked for. `near` is the stage for an event that
-    is not found on its own grid, or that this makes, see `moved`; that of a curve if it is not given.
+    is lost on its own grid, or lies where that turns the path, see `moved`; that of a curve if it is not given.
     """
 
     body: Gridded
@@ -81,7 +81,7 @@ class Standing(WhereAsked):
         return radius - near, radius + near, self.body.standing(radius)
 
     def __call__(self, event: Located) -> Chart:
-        """Chart for a state, as on the grids before one that follows the contact if it had to."""
+        """Chart for a state: one that follows the contact if the state needed such a grid before."""
         return self._following(event) if event.followed else super().__call__(event)
 
     def moved(self, event: Located, problem: Traceable) -> Located | Unsolved:

@@ -120,8 +120,9 @@ class Located(Valued):
     """A root of a condition on one discretisation's path.
 
     The point has converged; the slope is the derivative along the path of what vanishes, to start a root finder from.
-    By so much arclength, `left`, the root is not known: that of a rate is where it vanishes but for rounding. It is
-    `followed` if a grid that stands still lost it, or made it, so that it goes on on those that follow the contact.
+    By so much arclength, `left`, the root is not known: that of a rate is where it vanishes but for rounding. If a
+    grid that stands still lost it, or turned the path there itself, it is `followed`: it keeps to grids that follow the
+    contact.
     """
 
     condition: Condition
@@ -186,8 +187,7 @@ def _watched(
 
 def seen_from(a: Point, b: Point, metric: Metric) -> Point:
     """A point with its arclength as `correct` measures it from another, along the tangent of that."""
-    step = float((metric.weights * a.rates)[:3] @ (b.observables - a.observables)[:3])
-    return replace(b, arclength=a.arclength + step)
+    return replace(b, arclength=a.arclength + metric.step(a, b))
 
 
 def wound(problem: Traceable, a: Point, b: Point, metric: Metric) -> list[Point] | Unsolved:
@@ -312,7 +312,7 @@ def hermite(problem: Traceable, a: Point, b: Point, t: float, metric: Metric) ->
 
 
 def relocate(
-    event: Located, problem: Traceable, start: Array, metric: Metric, points: int = LOCATE.points
+    event: Located, problem: Traceable, start: Array, metric: Metric, most_points: int = LOCATE.points
 ) -> Located | Unsolved:
     """Solve for an event again on another discretisation, from a state transferred to it.
 
@@ -323,10 +323,10 @@ def relocate(
         nearby = same_place(event.point, problem, start, metric)
         return nearby and steepest_from(problem, nearby, metric, LOCATE.widths[1:])
     found = _solved(problem, condition, start, metric, event.point, LOCATE.nearby)
-    return found if found and found.slope * event.slope > 0 else _searched(event, problem, start, metric, points)
+    return found if found and found.slope * event.slope > 0 else _searched(event, problem, start, metric, most_points)
 
 
-def _searched(event: Located, problem: Traceable, start: Array, metric: Metric, most: int) -> Located | Unsolved:
+def _searched(event: Located, problem: Traceable, start: Array, metric: Metric, most_points: int) -> Located | Unsolved:
     """Solve for an event farther off: in the plane across the path first, then along it to beyond the event."""
     condition, here = event.condition, same_place(event.point, problem, start, metric)
     if not here:
@@ -340,7 +340,7 @@ def _searched(event: Located, problem: Traceable, start: Array, metric: Metric, 
         return _changes(way, point, condition) or point.arclength - way.arclength > LOCATE.farthest
 
     steps = Steps(first=min(LOCATE.past * abs(ahead), LOCATE.nearby), longest=LOCATE.nearby)
-    points = tried(follow, problem, way, metric, beyond, steps=steps, max_points=most)
+    points = tried(follow, problem, way, metric, beyond, steps=steps, max_points=most_points)
     if isinstance(points, Unsolved):
         return points
     if not _changes(way, points[-1], condition):

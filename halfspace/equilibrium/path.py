@@ -55,6 +55,10 @@ class Metric:
         """Length of the straight line between two points."""
         return math.sqrt(self.weights[:3] @ (b.observables - a.observables)[:3] ** 2)
 
+    def step(self, a: Point, b: Point) -> float:
+        """Arclength from one point to another as it is measured along the tangent of the first."""
+        return float((self.weights * a.rates)[:3] @ (b.observables - a.observables)[:3])
+
     def along(self, a: Point, b: Point) -> float:
         """Cosine of the angle between the path at two points."""
         return float(self.weights @ (a.rates * b.rates))
@@ -172,7 +176,7 @@ def _bend(before: Point, point: Point, step: float, metric: Metric) -> Array:
 
     It is a cubic in the arclength as the step is measured, along the tangent of the point.
     """
-    length = float((metric.weights * point.rates)[:3] @ (point.observables - before.observables)[:3])
+    length = -metric.step(point, before)
     mean, ahead = (point.x - before.x) / length, step / length
     first, last = before.tangent / metric.along(before, point), point.tangent
     return np.asarray(ahead * (first + 2 * last - 3 * mean + ahead * (first + last - 2 * mean)))
@@ -296,8 +300,8 @@ def _aside(a: Point, b: Point, metric: Metric) -> float:
 
     Beyond a sharp turn, as at the load's least on flat tips, a path taken to go back looks straight by its tangents.
     """
-    rates, way = np.array([a.rates, b.rates])[:, :3], (b.observables - a.observables)[:3]
-    return math.acos(np.clip(rates @ (metric.weights[:3] * way) / metric.distance(a, b), -1.0, 1.0).min())
+    ahead = min(metric.step(a, b), -metric.step(b, a)) / metric.distance(a, b)
+    return math.acos(min(1.0, max(-1.0, ahead)))
 
 
 def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -> float:

@@ -125,8 +125,9 @@ def measured(problem: Traceable, points: Sequence[Point], metric: Metric, before
 
 def _onwards(last: Point, point: Point, metric: Metric) -> Point:
     """Return the point with its arclength from the last one."""
-    step = float((metric.weights * last.rates)[:3] @ (point.observables - last.observables)[:3])
-    return replace(point, arclength=last.arclength + max(step, 0.0))  # 0 where one grid hands over to the next
+    return replace(
+        point, arclength=last.arclength + max(metric.step(last, point), 0.0)
+    )  # 0 where one grid hands over to the next
 
 
 @dataclass(frozen=True, eq=False, repr=False)

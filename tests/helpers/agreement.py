@@ -2,10 +2,10 @@
 
 import math
 
-QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
+from halfspace.equilibrium.contact import OBSERVABLES
 
 
-def differing(ours, truth, quantities=QUANTITIES):
+def differing(ours, truth, quantities=OBSERVABLES):
     """Events that one of two curves lacks, and numbers of events that are farther apart than both errors allow."""
     found = [*(ours.events.keys() ^ truth.events.keys())]
     for name in ours.events.keys() & truth.events.keys():

@@ -214,8 +214,8 @@ def test_caption_and_frame_have_the_events_numbers_by_their_symbols(block, state
     assert ("a" in said) == np.isfinite(found.contact_radius)
     if "a" in said:
         assert said["a"] == pytest.approx(found.contact_radius, abs=2e-2)
-    frame = _said(module.state_words(block, states[event]))
-    assert [frame[name] for name in ("W", "alpha")] == pytest.approx([said["W"], said["alpha"]], abs=1e-2)
+    frame, numbers = _said(module.state_words(block, states[event])), states[event].observables
+    assert [frame["W"], frame["alpha"]] == pytest.approx([numbers[LOAD], numbers[APPROACH]], abs=6e-3)
 
 
 def test_the_curve_on_a_picture_has_the_state_on_it(block, states):

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from agreement import differing
 
 import fem_adhesion
 import halfspace
@@ -45,9 +46,7 @@ def test_the_pull_off_of_a_wide_contact_does_not_stay_where_its_grid_was_made():
     layer, cone = Layers((Stratum(1.0),)), Hyperboloid(1.0)
     found = fem_adhesion.trace(Scene(12.0, layer, cone), rtol=1e-2)
     true = halfspace.trace(12.0, body=halfspace.Layers((Stratum(1.0),)), profile=cone, rtol=1e-4)
-    for name in ("pull_off", "jump_off"):
-        for quantity in ("approach", "load", "central_gap", "contact_radius"):
-            assert found.event(name).estimate(quantity).agrees(true.event(name).estimate(quantity)), (name, quantity)
+    assert differing(found, true) == []
 
 
 @pytest.mark.parametrize(

@@ -47,6 +47,8 @@ def test_a_take_off_has_the_errors_of_the_event_that_it_is(path):
         for quantity in ("approach", "load", "central_gap", "contact_radius"):
             own, event = (getattr(state, f"{quantity}_error") for state in (jump.take_off, path.event(name)))
             assert own == pytest.approx(event, rel=0.05, abs=1e-10, nan_ok=True), (name, quantity)
+    assert grips.jump_on.take_off.approach == pytest.approx(path.event("jump_on").approach, abs=1e-9)
+    assert grips.jump_off.take_off.load == pytest.approx(path.event("jump_off").load, abs=1e-8)
     assert cycle(path, 1e9).energy_lost.value == pytest.approx(grips.energy_lost.value, rel=1e-6)
     assert energy_lost(path.segments) == pytest.approx(grips.energy_lost.value, rel=1e-5)
 
@@ -110,14 +112,17 @@ def test_critical_stiffness_tends_to_bradleys_steepest_fall():
 
 @pytest.mark.parametrize(("tabor", "stiffness"), [(0.75, 0.5), (8.0, 3.0)])
 def test_the_error_of_an_energy_is_by_its_change_over_grids(tabor, stiffness):
-    """Or from a twin, or a coarser grid, if that is more."""
-    path = halfspace.trace(tabor, rtol=1e-2)
+    """Or from a twin, or a coarser grid, if that is more; it holds the truth of a tighter curve."""
+    path, truth = halfspace.trace(tabor, rtol=1e-2), cycle(halfspace.trace(tabor, rtol=1e-6), stiffness)
     found, rough = cycle(path, stiffness), jumps(path.segments, 1 / stiffness)
-    for jump, before in zip((found.jump_on, found.jump_off), rough, strict=True):
+    both, known = (found.jump_on, found.jump_off), (truth.jump_on, truth.jump_off)
+    for jump, before, true in zip(both, rough, known, strict=True):
         left = max(path.ladder.rule.remaining, 1) * abs(jump.energy.value - before.energy(1 / stiffness))
         rounding = 2e-11 * (1 + jump.energy.value)
         least = path.ladder.rule.least * abs(jump.energy.value)
         assert left - rounding <= jump.energy.error <= max(10 * left + rounding, least)
+        assert abs(jump.energy.value - true.energy.value) <= jump.energy.error
+    assert abs(found.energy_lost.value - truth.energy_lost.value) <= found.energy_lost.error
     assert found.energy_lost == found.jump_on.energy + found.jump_off.energy
 
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from agreement import differing
 from truths import relocated, under_surface
 
 import halfspace
@@ -161,7 +160,10 @@ def test_estimates_hold_where_the_third_derivative_leaps(tmp_path):
     tension = (h**-3 - h**-9) * (1 - 0.95 * np.exp(-(((h - 2.5) / 0.7) ** 2)))
     law = laws.Tabulated(written(tmp_path / "law.csv", h, tension))
     path, truth = (halfspace.trace(3.0, law=law, rtol=rtol) for rtol in (1e-5, 1e-8))
-    assert differing(path, truth, ["approach", "load"]) == []
+    for name, event in path.events.items():
+        for quantity in ("approach", "load"):
+            ours, best = (one.estimate(quantity) for one in (event, truth.event(name)))
+            assert abs(ours.value - best.value) <= ours.error + 0.1 * best.error
 
 
 def test_what_a_table_leaves_open_is_told(tmp_path):
