@@ -64,8 +64,8 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     EquilibriumPath
         The curve and its events. Of a half-space, their error estimates add the change by a higher degree and by a
         larger block, that is, they are distances from the half-space, not from the block; of another body they are the
-        change by a higher degree, beside that from other cells if it is bonded, held over a cap or layered, of a user's
-        mesh that by a finer one. Points of the curve, and the states between them, are solved for anew when they are
+        change by a higher degree, beside that from other cells if it is bonded or held over a cap, of a user's mesh
+        that by a finer one. Points of the curve, and the states between them, are solved for anew when they are
         asked for, see `EquilibriumPath.at`.
 
     Raises

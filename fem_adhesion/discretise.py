@@ -123,7 +123,16 @@ def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) 
     first = at_tip(scene.surface, how.degree + 2)
     finest = finest_length(scene, how) / scene.scales.edge_cell(1.0)
     return SizedBody(
-        scene.scales, partial(_made, scene, how), finest, how.growth, outer, coordinate, last, to_load, first
+        scene.scales,
+        partial(_made, scene, how),
+        finest,
+        how.growth,
+        outer,
+        coordinate,
+        last=last,
+        to_load=to_load,
+        first=first,
+        strip=scene.body.strip,
     )
 
 

@@ -64,6 +64,7 @@ class Known:
     size: float = math.inf  # R/eps, infinite of a flat surface
     shape: Profile = PARABOLOID  # profile of a contact with it
     layered: LayeredBody | None = None  # strata on a base, see `halfspace.elastic.layers`
+    strip: float = math.pi  # where its kernel is analytic, see `halfspace.accuracy.finite_bodies.SizedBody`
     cut_off: float | None = None  # its size in beta if it is cut off under an endless surface
     file: Path | None = None  # its mesh, if it is given; other bodies are meshed anew for every contact radius
     checked_by: SolverName | None = None  # solver without finite elements, see `fem_adhesion.crosscheck.references`

@@ -44,6 +44,7 @@ class Stratified(Strata, Body):
     """Strata on a rigid base or on a half-space; E* is that of the first."""
 
     checked_by = "half-space"
+    strip = math.pi / 2
 
     looks: ClassVar[str] = "elastic layer"
 

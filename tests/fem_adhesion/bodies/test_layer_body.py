@@ -74,6 +74,17 @@ def test_both_solvers_have_the_same_events_on_a_layer(scene, rtol):
     assert differing(elements, integral) == []
 
 
+def test_a_state_between_events_is_held_by_its_estimate():
+    """Interpolated as if only the surface had images, operators on thin strata all erred by 7 estimates of its gap."""
+    layer, law, profile = Layer(0.916, poisson=0.4999), Dlvo(-0.66, 3.24), Power(2.29)
+    elements = traced(Scene(0.644, layer, profile, law=law), 4.5e-4)
+    integral = halfspace.trace(0.644, body=layer.layered, law=law, profile=profile, rtol=1e-6)
+    found, true = (path.at(load=-0.669279, branch="contact") for path in (elements, integral))
+    for quantity in ("approach", "central_gap", "contact_radius"):
+        bar = getattr(found, f"{quantity}_error") + getattr(true, f"{quantity}_error")
+        assert abs(getattr(found, quantity) - getattr(true, quantity)) < bar, quantity
+
+
 @pytest.mark.parametrize("body", [HalfSpace(), Layer(2.0, poisson=0.3)], ids=str)
 def test_under_a_small_sphere_a_degree_leaves_a_tenth_where_the_surface_ends(body):
     """On longer cells there each degree left a half: the half-space's radius was 1.5 times outside its estimate.
