@@ -128,24 +128,26 @@ def _true(found):
     return [(w, v) for w, v in found.items() if math.isfinite(v) and w != "zero_load load"]
 
 
-def _by_two(pairs):
-    rough, best = pairs
-    return {w: Estimate(v, abs(v - rough.get(w, math.nan))) for w, v in _true(best)}
+def by_two(pairs):
+    """Truth by the second of two grids, known to its change from the first; of what one of them lacks nothing is known."""
+    rough, best = (dict(_true(found)) for found in pairs)
+    known = {w: abs(best[w] - rough[w]) if w in best and w in rough else math.inf for w in best | rough}
+    return {w: Estimate(best.get(w, math.nan), error) for w, error in known.items()}
 
 
 def traced(stages, scene, *_):
     """Events of the curve that is traced anew on the first stage."""
-    return _by_two(map(truths.of_state, truths.traced(stages(scene))))
+    return by_two(map(truths.of_state, truths.traced(stages(scene))))
 
 
 def relocated(stages, scene, path, _=None):
     """Events, from where they are on the curve."""
-    return _by_two(map(truths.of_state, truths.relocated(path.stages[-1], stages(scene))))
+    return by_two(map(truths.of_state, truths.relocated(path.stages[-1], stages(scene))))
 
 
 def along(stages, scene, path, _):
     """The same points of a curve, in the plane across the path."""
-    return _by_two(truths.points_on(stage, path, range(0, path.count, 2)) for stage in stages(scene))
+    return by_two(truths.points_on(stage, path, range(0, path.count, 2)) for stage in stages(scene))
 
 
 def tighter(numbers, asked, solve, scene, path, rtol):
@@ -176,7 +178,7 @@ def found_again(drawn, path, _=None):
     places = {_where(*place): place for place in few_places(path)}
     states = {where: truths.state_of(path, *place) for where, place in places.items()}
     pairs = truths.relocated(path.stages[-1] | states, truths.of(drawn.scene))
-    return _by_two(truths.of_state(found) | _of_places(found, places) for found in pairs)
+    return by_two(truths.of_state(found) | _of_places(found, places) for found in pairs)
 
 
 def _of_places(found, places):

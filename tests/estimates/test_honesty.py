@@ -56,6 +56,14 @@ def test_a_number_that_is_not_told_or_has_no_truth_lies_outside():
     }  # fmt: skip
 
 
+def test_a_radius_that_one_of_two_true_grids_lacks_is_not_judged():
+    """Beside a fold one grid of a block was in contact and the other was not."""
+    one, other = {"gap": 0.2, "radius": math.nan}, {"gap": 0.1, "radius": 0.3}
+    for pair in ((one, other), (other, one)):
+        told = {"gap": Estimate(0.15, 0.01), "radius": Estimate(0.3, 0.01)}
+        assert {n.what: n.ratio for n in judge(told, families.by_two(pair))} == {"gap": 0.0, "radius": 0.0}
+
+
 def row(*numbers, drawn=False, ends=(), seconds=1.0, memory=1.0):
     one = Row("a family", drawn=drawn)
     one.add(Answered(numbers, ends, seconds, memory, 1.0))
