@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
@@ -106,7 +106,8 @@ class Stages(Valued):
         """
         degree = _lowest_degree(rtol, self.scene.tabor) + max(level, 1)
         linear = not level and nearly_linear(self.scene, to_load, self.settings)
-        curve = partial(linear_charts, self.scene, to_load) if linear else partial(iter, self.windows(degree - 1))
+        at_finite_strain = partial(self.charts, degree - 1, to_load)
+        curve = partial(linear_charts, self.scene, to_load) if linear else at_finite_strain
         other, body = self.body(degree - 1, *GRIDS.twin[:2]), self.body(degree)
         bodies = [other] if not level else [body] if level == 1 else [other, body]
         stages = tuple(Raising(one, partial(Stages.windows, self, one.how.degree)) for one in bodies)
@@ -114,6 +115,16 @@ class Stages(Valued):
         settings = {"linear": linear, **asdict(bodies[-1].how)}
         rule = ErrorRule(left, parts=parts, along=True, least=LEAST * rtol)
         return Rung(curve, stages, settings, rule=rule)
+
+    def charts(self, degree: int, to_load: float) -> Iterable[Chart]:
+        """Charts of a curve up to a load; NotConverged if that takes more of them than are worth their time."""
+        scene, windows, most = self.scene, self.windows(degree), self.settings.most_windows
+        if (count := windows.number(scene.scales.widest_radius(to_load)) + 1) > most:
+            raise NotConverged(
+                f"tabor = {scene.tabor:g} with radius_ratio = {scene.radius_ratio:g} takes {count} meshes along the "
+                f"curve at finite strain, limit {most}; take a smaller tabor, a smaller to_load or LinearElastic"
+            )
+        return windows
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
@@ -233,7 +244,7 @@ def raised(event: Located, problem: FiniteStrainProblem) -> Located | Unsolved:
             approach, load = event.point.observables[[APPROACH, LOAD]]
             return Unsolved(
                 f"the event at approach {approach:.6g} eps, load {load:.6g} R dgamma is lost at beta/R = "
-                f"{target.stretch:.3g} ({farther.reason}); take a larger radius_ratio"
+                f"{target.stretch:.3g} ({farther.reason.partition(';')[0]}); take a larger radius_ratio"
             )
     return found
 
@@ -355,12 +366,16 @@ class Windows(WhereAsked):
 
     def make(self, radius: float) -> tuple[float, float, Chart]:
         """Chart for a window of contact radii, in beta; the last one serves all that are wider."""
-        number = min(int(radius / self._width), self._count - 1)
+        number = self.number(radius)
         first, last = self._width * number, self._width * (number + 1)
         for *_, chart in self.made:  # the points of a curve come in order
             if isinstance(chart.problem, FiniteStrainProblem):
                 chart.problem.held.forget()
         return first, last if number < self._count - 1 else np.inf, self.body.chart(first, last)
+
+    def number(self, radius: float) -> int:
+        """Number of the window of a contact radius in beta."""
+        return min(int(radius / self._width), self._count - 1)
 
     @property
     def _width(self) -> float:

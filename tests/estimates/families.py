@@ -129,7 +129,7 @@ def _true(found):
 
 
 def by_two(pairs):
-    """Truth by the second of two grids, known to its change from the first; of what one of them lacks nothing is known."""
+    """Truth by the second of two grids, known to its change from the first; what one of them lacks is unknown."""
     rough, best = (dict(_true(found)) for found in pairs)
     known = {w: abs(best[w] - rough[w]) if w in best and w in rough else math.inf for w in best | rough}
     return {w: Estimate(best.get(w, math.nan), error) for w, error in known.items()}

@@ -234,6 +234,13 @@ def test_a_search_for_an_event_ends_after_the_points_allowed():
     assert relocate(event, problem, start, metric, USUAL.raised_points)
 
 
+def test_a_curve_of_too_many_meshes_is_refused_before_the_first():
+    """Its jump-off is lost when its strain is raised; meshes as fine as its spike took minutes along the curve."""
+    steep = replace(scene(3.0, 1070.0, 0.49, "normal"), law=Dlvo(0.27, 0.839))
+    with pytest.raises(NotConverged, match="takes 59 meshes along the curve at finite strain, limit 40"):
+        Stages(steep).charts(4, 5.0)
+
+
 def test_an_event_that_moved_on_its_mesh_keeps_it():
     """Else it might go from mesh to mesh without end."""
     interface = SimpleNamespace(contact_radius=lambda x: x)
