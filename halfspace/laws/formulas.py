@@ -182,8 +182,8 @@ class Dlvo(Law):
             limit = "charge < 1 and 9 (1 - charge) + screening charge > 3"
             raise InputError(f"charge = {q:g} leaves no core at screening = {kappa:g}, limit: {limit}; take 0.3")
         if not 3 / 8 + q / 8 - q / kappa > 0:
-            most = 3 / (8 / kappa - 1)
-            raise InputError(f"charge = {q:g} leaves no work of adhesion, limit: charge < {most:.3g} at this screening")
+            limit = f"{'<' if kappa < 8 else '>'} {3 / (8 / kappa - 1):.3g}"
+            raise InputError(f"charge = {q:g} leaves no work of adhesion, limit: charge {limit} at this screening")
         keep(self, charge=q, screening=kappa)
 
     @property

@@ -136,6 +136,7 @@ def by(law):
         (lambda: Morse(0), "k = 0 of Morse's law is outside 0.1 <= k <= 50"),
         (lambda: Exponential(3, 2.5), "core = 2.5 of the exponential law is outside a whole number, 2 <= core <= 60"),
         (lambda: Dlvo(0.5, 1.0), "charge = 0.5 leaves no work of adhesion, limit: charge < 0.429 at this screening"),
+        (lambda: Dlvo(-100, 8.5), "charge = -100 leaves no work of adhesion, limit: charge > -51 at this screening"),
         (lambda: Dlvo(2, 1.0), "charge = 2 leaves no core"),
         (lambda: Dlvo(0.1, 0), "screening = 0 is outside 0.02 <= screening <= 50"),
         (lambda: Dugdale(0.01), "width = 0.01 of Dugdale's law is outside 0.07 <= width <= 0.5; extrapolate from"),
