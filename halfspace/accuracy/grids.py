@@ -58,11 +58,6 @@ class Resolution:
     growth: float
     extent: float
 
-    @property
-    def cells(self) -> dict[str, object]:
-        """What it tells of a body whose extent is its own."""
-        return {"nodes": self.nodes, "finest": self.finest, "growth": self.growth}
-
 
 def resolution_for(scales: Scales, rtol: float, level: int = 0) -> Resolution:
     """Resolution whose events are right to about `rtol` at level 0 and five to ten times better with each node more.

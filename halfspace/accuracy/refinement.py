@@ -34,7 +34,7 @@ from halfspace.values import Estimate, Valued
 
 T = TypeVar("T")
 MOST_RUNGS = 4  # above the lowest
-FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and rounding leave
+FLAT = 1e-9  # eps/(R dgamma): what the last of the parabolas and rounding leave of how far a curve is from folds
 
 
 def climb(
@@ -97,7 +97,6 @@ def _climb_from(
         time.perf_counter() - began,
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
         margin,
-        on_twin={name: one[1][0] for name, one in chains.items()} if higher.twin else {},
         unconfirmed=tuple(Unconfirmed(*map(float, point.observables[:CONTACT_RADIUS])) for point in lost),
     )
 

@@ -59,8 +59,6 @@ class EquilibriumPath(WithEvents, Valued):
         eps/(R dgamma). Any apparatus of a greater compliance jumps; if it is negative, so do fixed grips.
     model_uncertainty : callable, optional
         How far apart the numbers of an event are in models between which the assumptions leave a choice, if they do.
-    on_twin : mapping of str to Located
-        The events, and the two states of `energy`, on the ladder's twin.
     unconfirmed : tuple of Unconfirmed
         Folds that cannot be told: the curve as it was traced has them, but no finer grid.
     """
@@ -75,12 +73,11 @@ class EquilibriumPath(WithEvents, Valued):
     settings: Mapping[str, Any] = field(default_factory=dict)
     margin: Estimate | None = None
     model_uncertainty: Callable[[str], Mapping[str, float]] | None = field(default=None, compare=False)
-    on_twin: Mapping[str, Located] = field(default_factory=dict)
     unconfirmed: tuple[Unconfirmed, ...] = ()
 
     @property
     def finest(self) -> Stage:
-        """Chart of the finest discretisation for an event, found on any."""
+        """Finest discretisation, which has a chart for each event found on any."""
         return self.ladder.finest
 
     @property
@@ -139,7 +136,7 @@ class EquilibriumPath(WithEvents, Valued):
 
     @property
     def contact_radius(self) -> Array:
-        """Contact radius in beta, nan while the central gap exceeds 3^(1/6) eps, shape (points,)."""
+        """Contact radius in beta, nan while H(0) exceeds the gap of the largest tension, shape (points,)."""
         return self._observable(CONTACT_RADIUS)
 
     @property
@@ -215,6 +212,8 @@ class EquilibriumPath(WithEvents, Valued):
         ------
         InputError
             If there is no such state, or there are several.
+        halfspace.errors.NotConverged
+            If it is lost between two points of the curve.
         """
         asked = {"approach": approach, "load": load, "central_gap": central_gap}
         given = {name: values for name, values in asked.items() if values is not None}
@@ -261,8 +260,8 @@ class EquilibriumPath(WithEvents, Valued):
 
         ``events`` are by name, each a mapping of its numbers and their errors, ``approach`` ... and
         ``approach_error`` ..., and which of them are ``missed``; ``curve`` has the arrays of the points by name, with
-        ``stable_under_fixed_grips`` and ``stable_under_dead_load``; ``energy_released``, ``margin`` and ``jumps`` are
-        as the attributes.
+        ``stable_under_fixed_grips`` and ``stable_under_dead_load``; ``energy_released`` is the attribute ``energy``,
+        ``model_uncertainty`` is ``spread``, ``unconfirmed_folds`` are ``unconfirmed``, all else is as the attributes.
         """
         return {
             "events": self.tolerance.told(self.events),
