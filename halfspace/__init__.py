@@ -14,7 +14,7 @@ parameter and beta = (R^2 dgamma/E*)^(1/3).
 | approach alpha* | `approach` | eps | positive when pressed together; zero where undeformed surfaces are eps apart |
 | gap H = h/eps - 1 | `gap`, `central_gap` | eps | zero at the equilibrium spacing |
 | load W | `load` | R dgamma | positive in compression; the pull-off force is -min W |
-| radius u, a | `radii`, `contact_radius` | beta | the contact ends where H + 1 = 3^(1/6), the largest tension |
+| radius u, a | `radii`, `contact_radius` | beta | to where the tension is largest, H + 1 = 3^(1/6) by the 3-9 law |
 | pressure P | `pressure` | dgamma/(mu eps) | positive in compression |
 | energy | `energy` | R dgamma eps | released between a separated state and zero approach in contact |
 
@@ -80,7 +80,7 @@ _HOMES = {
     "sweep": "accuracy.sweep",
     "Sweep": "accuracy.sweep",
     "EquilibriumPath": "equilibrium.curve",
-    "Estimate": "equilibrium.curve",
+    "Estimate": "values",
     "Event": "equilibrium.events",
     **dict.fromkeys(("Coated", "Layer", "Layers", "Stratum", "Substrate"), "elastic.layers"),
     **dict.fromkeys(("ContactTooWide", "GridTooCoarse", "IllPosed", "InputError", "NotConverged"), "errors"),

@@ -141,8 +141,8 @@ def require_points(points: int) -> int:
 def require_radius(radius: float, tabor: float = math.inf) -> float:
     """Return the size of a block, or raise InputError unless the contact and its attraction fit in, and it in floats.
 
-    A contact is 2 to 3 beta wide and a nearly rigid sphere attracts over some beta/sqrt(tabor); half a block must do,
-    since the error is estimated from one half as large.
+    A contact is 2 to 3 beta wide and a nearly rigid sphere attracts over some beta/sqrt(tabor); the error is estimated
+    from a smaller block, which must do, too.
     """
     radius = require_number(radius, "radius")
     least = 5 * max(1.0, tabor**-0.5)

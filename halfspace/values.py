@@ -103,7 +103,7 @@ class States(Valued):
     central_gap, central_gap_error : array
         H(0) in eps.
     contact_radius, contact_radius_error : array
-        In beta; nan where the central gap exceeds 3^(1/6) eps.
+        In beta, of the edge where the tension is largest, H = 3^(1/6) - 1 by the 3-9 law; nan if H(0) exceeds that.
     """
 
     approach: Array

@@ -73,7 +73,8 @@ class SurfaceNodes(Valued):
         Radii of the surface nodes, ascending, in beta; those past the last cell are of an infinite one, see
         `to_infinity`.
     weights : (q,) array
-        Quadrature weights of the area element 2 pi u du: ``weights @ P`` is the load in R dgamma.
+        Quadrature weights of the area element 2 pi u du, or of that on a sphere itself where the pressure is per that:
+        ``weights @ P`` is the load in R dgamma.
     cells : (m + 1,) array
         Radii between which one interpolation polynomial holds, from 0 outwards.
     cell_nodes : (m, k) int array

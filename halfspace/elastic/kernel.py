@@ -2,8 +2,8 @@
 
 A ring of pressure p at radius s deflects the surface at radius r by (1/E*) p G(r, s) s ds. G is homogeneous
 of degree -1 and has a logarithmic singularity at r = s. It is integrated by Gauss's rule where the target
-is at least a panel's length away, and else by Gauss's rule in t after s - e = l t^q, e being the panel's
-point nearest to the target: the powers of t smother the logarithm, on the panel or just off it.
+is at least a quarter of the panel's length away, and else by Gauss's rule in t after s - e = l t^q, e being the
+panel's point nearest to the target: the powers of t smother the logarithm, on the panel or just off it.
 """
 
 from __future__ import annotations

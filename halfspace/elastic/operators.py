@@ -236,7 +236,7 @@ class Interpolated(Valued, Operator):
         return d_radii, d_weights, by_kernel - by_radii + compliance @ (d_weights / weights * pressure)
 
     def _nodes(self, scale: float) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        """Radii and weights 2 pi r dr/dx dx of Gauss's points of the cells at a scale; their derivatives by it."""
+        """Radii of Gauss's points of the cells at a scale, and weights of a ring's area; their derivatives by it."""
         grid = self.grid
         x, lengths = self._gauss_points(grid.lines(scale))
         dx, d_lengths = self._gauss_points(grid.moving * grid.edge_rate(scale))

@@ -40,8 +40,7 @@ WIDEST = 0.95  # of the radius of a body, that a contact may reach
 def widest_interval(nodes: int) -> float:
     """Widest interval between k nodes of a cell that carries the spike, in its widths.
 
-    Found by trial: at tabor 1 it leaves 5e-5 to 2e-3 of the pull-off load, ten times more if twice as wide; as every
-    such number it is measured at half and at double by ``tests/estimates/constants.py``.
+    Found by trial: at tabor 1 it leaves 5e-5 to 2e-3 of the pull-off load, ten times more if twice as wide.
     """
     k = nodes - 1
     return max(0.1, min(0.1 * k, 0.021 * k**2))
@@ -197,7 +196,7 @@ class ContactProblem(Valued):
         return self._acting(x).deflection.copy()
 
     def contact_radius(self, x: Array) -> float:
-        """Largest radius in beta at which the gap is 3^(1/6) eps, or nan where the surfaces are further apart.
+        """Largest radius in beta at which the gap is that of the largest tension, nan where all gaps are wider.
 
         Where they are nowhere so far apart it is the extent of the surface.
         """

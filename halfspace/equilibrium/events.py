@@ -42,7 +42,7 @@ class Event:
     central_gap, central_gap_error : float
         H(0) in eps, zero at the equilibrium spacing.
     contact_radius, contact_radius_error : float
-        In beta; nan where the central gap exceeds 3^(1/6) eps.
+        In beta, of the edge where the tension is largest, H = 3^(1/6) - 1 by the 3-9 law; nan if H(0) exceeds that.
     """
 
     name: str

@@ -146,7 +146,7 @@ def central_gap(value: float) -> Control:
 
 
 def contact_radius(value: float) -> Control:
-    """Gap of 3^(1/6) eps at the radius `value`, in beta; the start must be in contact."""
+    """Gap of the largest tension at the radius `value`, in beta; the start must be in contact."""
     return _single(CONTACT_RADIUS, value)
 
 

@@ -95,10 +95,10 @@ class Segment(Valued):
 class Steps:
     """Lengths of the continuation's steps, in arclength, and what they adapt to.
 
-    A step below `shortest` ends the path with an error. `turn` is the largest angle between the tangents at a step's
-    two ends, in radians. `iterations` are the Newton steps allowed for one continuation step, `astray` is the relative
-    size of the first of them if the step is of the right length, and `contraction` the part of the Newton step two
-    before that one may have.
+    A step below `shortest` ends the path with an error. `turn` is the angle between the tangents at a step's two ends
+    that the next step is to have, in radians; one of twice that is refused. `iterations` are the Newton steps allowed
+    for one continuation step, `astray` is the relative size of the first of them if the step is of the right length,
+    and `contraction` the part of the Newton step two before that one may have.
     """
 
     first: float = 0.05
