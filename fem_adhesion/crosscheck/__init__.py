@@ -20,17 +20,17 @@ How independent the two solvers are:
   and end, and the infinite one.
 * Where cells begin and end: the same radial lines; error estimates by refinement on each side.
 * All that is shared is checked by a weak form with its own law, profile, energy and Newton's method. For half-spaces it
-  has a mesh of its own, and takes of the solvers only the function that grades cells; other bodies it solves on their
-  mesh. Lengths and profiles are from formulas of its own (`definitions`); of laws but the 3-9 it is told the potential
-  alone, of profiles of the user's the height. Each event of the finite elements is put into it: do the gaps balance, do
-  the tensions across them make the load, are central gap and contact radius those of the equilibrium nearby, does the
-  approach turn along the load at a fold? It comes to jump_on on a way of its own, from undeformed surfaces far apart,
-  and tells the jumps apart by the side on which states are stable. The energy is that between two states which it
-  solves for at approaches of its own. Law, load, residual and tangent are compared at a state made up as well, so that
-  a solver which does not converge is told what is wrong with it. It looks for mistakes, not digits: its budget is a
-  part in a thousand, ten of gaps and radii. Beyond a Tabor parameter of 6, or at an edge as sharp, it only checks that
-  pull-off and jump-off are equilibria, not that they turn there, nor which jump a fold is. A contact edge that is
-  defined 2 % off moves the radius by less than that budget: the law's numbers show it.
+  has a mesh of its own, and takes of the solvers only how fine cells must be and the function that grades them; other
+  bodies it solves on their mesh. Lengths and profiles are from formulas of its own (`definitions`); of laws but the 3-9
+  it is told the potential alone, of profiles of the user's the height. Each event of the finite elements is put into
+  it: do the gaps balance, do the tensions across them make the load, are central gap and contact radius those of the
+  equilibrium nearby, does the approach turn along the load at a fold? It comes to jump_on on a way of its own, from
+  undeformed surfaces far apart, and tells the jumps apart by the side on which states are stable. The energy is that
+  between two states which it solves for at approaches of its own. Law, load, residual and tangent are compared at a
+  state made up as well, so that a solver which does not converge is told what is wrong with it. It looks for mistakes,
+  not digits: its budget is a part in a thousand, ten of gaps and radii. Beyond a Tabor parameter of 6, or at an edge as
+  sharp, it only checks that pull-off and jump-off are equilibria, not that they turn there, nor which jump a fold is. A
+  contact edge that is defined 2 % off moves the radius by less than that budget: the law's numbers show it.
 * That the condensed solver eliminates exactly: one small discretisation is solved with every displacement kept by
   `fem_adhesion.weak_form.trace`'s Newton as well; both agree to rounding. Half-spaces alone.
 * Parameters of laws and profiles, radii and shares of pairs: closed numbers that each must make (depth, stiffness,

@@ -63,7 +63,7 @@ class Settings:
     closing: float = 1e-6  # least gap in eps that counts as one
     tip: float = 1e-4  # what the cell under a sharp tip may leave
     farther: float = 10.0  # times that a box is larger for an attraction that falls slowly
-    degrees: tuple[int, ...] = (3, 4, 5)  # of a body with a length; one more where nothing else checks it
+    degrees: tuple[int, ...] = (3, 4, 5)  # of bodies with a length; one more of layers and where nothing else checks
     nearly: float = 0.45  # Poisson's ratio beyond which a body with a length has a degree more
     locking: float = 0.499  # Poisson's ratio beyond which a half-space has a degree more, as by other laws
     sharp: float = 6.0  # sharpness of an edge beyond which its spike is too narrow to show where it turns

@@ -154,9 +154,9 @@ def _on_given_mesh(scene: Scene, degree: int, *_: float) -> Contact:
 
 @lru_cache(maxsize=2)
 def _given_mesh(scene: Scene) -> Any:
-    """The mesh as it is, of straight cells that on their smooth line; the vertices of triangles ascend.
+    """The mesh as it is, or of straight cells cut finer, with the contact on its smooth line.
 
-    So neighbours agree on the places along their sides.
+    The vertices of triangles ascend, so that neighbours agree on the places along their sides.
     """
     mesh = scene.body.mesh(lengths(scene)[0], np.zeros(1), 0.0, Discretisation(USUAL.degrees[0]))
     mesh = refined(mesh) if is_straight(mesh) else mesh
