@@ -64,16 +64,16 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     EquilibriumPath
         The curve and its events. Of a half-space, their error estimates add the change by a higher degree and by a
         larger block, that is, they are distances from the half-space, not from the block; of another body they are the
-        change by a higher degree, beside that from other cells if it is bonded or held over a cap, of a user's mesh
-        that by a finer one. Points of the curve, and the states between them, are solved for anew when they are
-        asked for, see `EquilibriumPath.at`.
+        change by a higher degree, beside that from other cells if it is bonded or held over a cap, or the tension ends
+        by a step, of a user's mesh that by a finer one. Points of the curve, and the states between them, are solved
+        for anew when they are asked for, see `EquilibriumPath.at`.
 
     Raises
     ------
     InputError
-        If an input is out of range, a mesh file is no body, or the contact grows wider than its body.
+        If an input is out of range, or a mesh file is no body.
     halfspace.errors.NotConverged
-        If the curve cannot be traced.
+        If the curve cannot be traced; as ContactTooWide if the contact grows wider than its body.
     """
     require_scene(scene)
     rtol, to_load = require_rtol(rtol), require_load(to_load)

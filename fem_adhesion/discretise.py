@@ -45,7 +45,7 @@ FAR_FIELDS: Mapping[FarFieldName, FarField] = {
 
 TRIANGLE = ElementTriP2()
 LENGTHS = 50  # lengths of the cells at the contact edge to a factor of e, so that charts of like contacts share
-CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to some 1e-4
+CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to 1e-3 or better: see `ChartSettings`
 
 
 @cache
@@ -159,7 +159,7 @@ def discretised_about(scene: Scene, contact_radius: float, how: Discretisation) 
     return discretise(scene, grid.graded(radius if radius > length else 0.0, length, size, growth=how.growth), how)
 
 
-LEFT_OUT = 1e-5  # part of the load beyond a block that goes on as a half-space, for fields: it is 15 to 80 beta wide
+LEFT_OUT = 1e-5  # part of the load beyond a block for fields that goes on as a half-space: 44 beta wide at tabor 1
 FIELDS_BEYOND = 10.0  # `Discretisation.beyond` for fields inside a half-space under a sphere
 
 

@@ -38,8 +38,8 @@ class Discretisation:
     `finest` is the length of the cells at the contact edge, in widths of the spike of tension there, `growth` the ratio
     of neighbouring cells, and `rings` the number of rings of cells around the corner where a mid-plane meets the free
     surface, if it is bonded. `beyond` is the size L of what is meshed of a half-space under a surface that ends, in the
-    length over which the load on it is spread, see `Body.spread`: the far field errs by O(L^-5). Each cell of a mesh
-    that is given is cut into four as often as `refined` says.
+    radius of that, or under strata, in the length over which they spread a load, see `layers.Stratified.spread`: the
+    far field errs by O(L^-5). Each cell of a mesh that is given is cut into four as often as `refined` says.
     """
 
     degree: int
@@ -84,7 +84,7 @@ class Body(Known, ABC):
 
     stretches: ClassVar[bool] = False  # whether it may be neo-Hookean
     curved: ClassVar[bool] = False  # whether the area of its surface differs from the projected one
-    meets: ClassVar[bool] = False  # whether it may have a counter-body, and be one if it is not the smaller
+    meets: ClassVar[bool] = False  # whether it may have a counter-body
     faces: ClassVar[bool] = False  # whether it may be a counter-body
     has_fields: ClassVar[bool] = True  # whether the fields inside it are to be had
     looks: ClassVar[str] = "elastic body"  # what a picture of it shows

@@ -63,7 +63,7 @@ class HalfSpace(Body):
 
 @dataclass(frozen=True, kw_only=True)
 class Block(Body):
-    """Block of fixed size under a paraboloid.
+    """Block of fixed size under a paraboloid, or another surface that does not end.
 
     Parameters
     ----------

@@ -152,8 +152,8 @@ def condense(
     The compliance is N K^-1 N' diag(w): N evaluates the surface deflection -u_z at the Gauss points of the contact
     facets and w are the weights of 2 pi r dr, so a surface law assembled by quadrature at them is condensed exactly.
 
-    The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.exterior`. Gauss's points on a
-    contact facet are more than the degree p of the element, p + 2 unless given. The stiffness of the cells is
+    The far field is one of `fem_adhesion.elasticity.exterior`. Gauss's points on a contact facet are more than the
+    degree p of the element, p + 2 unless given. The stiffness of the cells is
     that of displacements alone unless given; that of projected dilatations does not lock. With the traction
     "projected" the pressure, which is vertical, acts on the area projected on the plane of the contact, with "surface"
     on that of the surface. InputError unless 0 <= poisson < 0.5 and the points are enough.

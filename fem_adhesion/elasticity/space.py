@@ -25,7 +25,7 @@ class Space(Valued):
     """Displacements (u_r, u_z), both expanded in one scalar element on one mesh.
 
     The mesh has the boundaries "axis", "contact" and "far", see `fem_adhesion.mesh.block`; the element n functions per
-    cell: ElementTriP1, P2, P3, ElementQuad1 or ElementQuadP(p).
+    cell: ElementTriP1, P2, P3, ElementQuad1, ElementQuad2 or ElementQuadP(p).
     """
 
     mesh: Any

@@ -202,7 +202,7 @@ def trace(
     rtol : float
         Relative accuracy of loads, and of approaches in the range of the events', 1e-4 to 0.1.
     to_load : float
-        Compressive load in R dgamma at which the curve ends, 0 to 20.
+        Compressive load in R dgamma at which the curve ends, 0.001 to 20.
 
     Raises
     ------
