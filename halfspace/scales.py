@@ -284,7 +284,7 @@ class Scales:
 
     @cached_property
     def separated_approach(self) -> float:
-        """Approach in eps at which only the separated branch exists; left of jump_off, -1.64 mu in the JKR limit."""
+        """Approach in eps at which a half-space is separated alone; left of jump_off, -1.61 mu in the JKR limit."""
         apart = max(self.how.separated, 3 * self.law.range(0.1))
         return -apart - self.tabor * max(2.0, -1.2 * jkr_fold(self.profile))
 
