@@ -4,7 +4,7 @@ Rooms, in the order of reading: `scene` (what is asked) and its parts, `bodies` 
 `discretise` (from a scene to an operator), `finite_strain` (every unknown at once), `convergence` (the curve that
 answers), `fields` and `paraview` (inside the body), a folder for each command, and `common` for what these share;
 `registry` has the names of parts. `weak_form` is the contact problem as a textbook has it and `harmonics` the whole
-sphere in Legendre polynomials; they only check the others.
+sphere in Legendre polynomials; both check the others.
 
 What it is good for, and what not:
 

@@ -21,7 +21,7 @@ class Elastic(NamedTuple):
 
 @dataclass(frozen=True)
 class LinearElastic:
-    """Small strain, 0 <= poisson < 0.5, or InputError.
+    """Small strain, Poisson's ratio 0 to 0.499999, or InputError.
 
     The traction says which area the law's traction, which is vertical, is counted per: the projected one, exact for
     rigid shapes, or that of the surface itself.
@@ -45,7 +45,7 @@ class LinearElastic:
 
 @dataclass(frozen=True)
 class NeoHookean:
-    """Finite strain; Poisson's ratio is that of small strains, 0 <= poisson < 0.5, or InputError.
+    """Finite strain; Poisson's ratio is that of small strains, 0 to 0.499999, or InputError.
 
     The traction says what the law's traction is counted per where the projected area is stretched: "projected" is the
     blend that conserves matter of "reference", per undeformed area, and "normal", per deformed area and normal to the

@@ -26,6 +26,8 @@ class Equilibrium(Valued):
 
     Attributes
     ----------
+    contact : Contact
+        What is in equilibrium.
     y : (q + 1,) array
         Gaps and approach.
     u : (n,) array
