@@ -22,7 +22,8 @@ from halfspace.values import Array
 ROUNDS = 400  # repetitions of a fit
 DIGITS = 6  # significant digits of a coefficient
 TABORS = np.geomspace(0.01, 300, 1500)
-FOLDED = atlas.birth_of_folds().value + np.geomspace(1e-3, 299.3, 1500)
+FOLDED = atlas.birth_of_folds().value + np.geomspace(1e-6, 299.3, 1500)
+LOSING = atlas.birth_of_folds().value + np.geomspace(1e-5, 299.3, 1500)  # nearer, the atlas has few digits of the loss
 
 GRID = (24, 36, 9)  # points in tabor, R/eps and Poisson's ratio
 
@@ -48,23 +49,16 @@ def constants() -> dict[str, Any]:
     x = quotient(A, g - 1, lambda x: _sum(s, [1, *x[4:]]), g)
     found |= {"zero_load": [1.0, *x[:4]], "zero_load_below": [1.0, *x[4:]]}
     on, off = atlas.jump_on(FOLDED).take_off.approach, atlas.jump_off(FOLDED).take_off.approach
-    jkr_off = -3 / 4 * np.pi ** (2 / 3) * FOLDED
-    for name, limit, power, exact, offset, terms in (
-        ("jump_on", -fits.ATTRACTION * FOLDED ** (3 / 7), 18 / 7, on, 1.0, 3),
-        ("jump_off", jkr_off, 3 / 2, off, 0.0, 6),
-        (
-            "energy_lost",
-            fits.JKR_LOST * FOLDED * fits.past_birth(FOLDED, 4 / 7) ** 4,
-            4 / 7,
-            atlas.energy_lost(FOLDED).energy,
-            0.0,
-            5,
-        ),
+    soft_on, soft_off = 1 - fits.ATTRACTION * FOLDED ** (3 / 7), -3 / 4 * np.pi ** (2 / 3) * FOLDED
+    lost, soft_lost = atlas.energy_lost(LOSING).energy, fits.JKR_LOST * LOSING * fits.past_birth(LOSING, 4 / 7) ** 4
+    for name, tabors, power, exact, soft, offset, terms in (
+        ("jump_on", FOLDED, 18 / 7, on, soft_on, 1.0, 4),
+        ("jump_off", FOLDED, 3 / 2, off, soft_off, 0.0, 7),
+        ("energy_lost", LOSING, 4 / 7, lost, soft_lost, 0.0, 6),
     ):
-        v = fits.past_birth(FOLDED, power)
-        scale = np.abs(exact) + offset
-        A = (limit * (1 - v))[:, None] * np.vander(v, terms, increasing=True)
-        found[name] = list(quotient(A, exact - offset - limit, lambda _: np.ones(1), scale))
+        v = fits.past_birth(tabors, power)
+        A = ((soft - offset) * (1 - v))[:, None] * np.vander(v, terms, increasing=True)
+        found[name] = list(quotient(A, exact - soft, lambda _: np.ones(1), np.abs(exact) + offset))
     found["sphere"] = list(of_spheres())
     return {name: rounded(value, DIGITS) if isinstance(value, list) else value for name, value in found.items()}
 

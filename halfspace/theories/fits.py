@@ -5,9 +5,9 @@ They serve any Tabor parameter mu, and all but `load` are exact in both limits, 
 
     pull_off_load       2.1e-5 of the load
     zero_load_radius    5.7e-5 of the radius
-    jump_on_approach    2.7e-5 of |alpha*| + 1
-    jump_off_approach   6.4e-4 of |alpha*|
-    energy_lost         3.4e-4 of the energy
+    jump_on_approach    5.9e-6 of |alpha*| + 1
+    jump_off_approach   4.1e-4 of |alpha*|
+    energy_lost         2.5e-4 of the energy
     load                7.5e-3 of the pull-off load
 
 and for spheres within `halfspace.atlas.sphere`
@@ -15,7 +15,8 @@ and for spheres within `halfspace.atlas.sphere`
     sphere_factor       2.3e-3 of the factor.
 
 Loads in R dgamma, radii in beta, approaches in eps, energies in R dgamma eps. Jumps are under fixed grips, and nan
-below the birth of folds at mu = b. Coefficients are in ascending order.
+below the birth of folds at mu = b; up to mu = b + 1e-5 the energy, below 4e-10, is not compared. Coefficients are in
+ascending order.
 """
 
 from __future__ import annotations

@@ -11,7 +11,8 @@ from halfspace.theories import closed_forms, fits
 BIRTH = atlas.birth_of_folds().value
 STATED = {name: float(worst) for name, worst in re.findall(r"^    (\w+) +(\S+) of", fits.__doc__, re.M)}
 ALL = np.geomspace(0.01, 300, 10_000)
-FOLDED = BIRTH + np.geomspace(1e-3, 300 - BIRTH, 10_000)
+FOLDED = BIRTH + np.geomspace(1e-7, 300 - BIRTH, 10_000)
+LOSING = BIRTH + np.geomspace(1e-5, 300 - BIRTH, 10_000)  # nearer, the atlas has few digits of the loss
 
 
 @pytest.mark.parametrize(
@@ -21,7 +22,7 @@ FOLDED = BIRTH + np.geomspace(1e-3, 300 - BIRTH, 10_000)
         ("zero_load_radius", ALL, lambda mu: atlas.zero_load(mu).contact_radius),
         ("jump_on_approach", FOLDED, lambda mu: atlas.jump_on(mu).take_off.approach),
         ("jump_off_approach", FOLDED, lambda mu: atlas.jump_off(mu).take_off.approach),
-        ("energy_lost", FOLDED, lambda mu: atlas.energy_lost(mu).energy),
+        ("energy_lost", LOSING, lambda mu: atlas.energy_lost(mu).energy),
     ],
 )
 def test_errors_are_as_stated(name, tabor, exact):
@@ -56,7 +57,7 @@ def test_constants_of_the_limits_are_the_atlas_s():
     towards_rigid = softened[0] - tabor[0] ** 1.5 * np.diff(softened)[0] / np.diff(tabor**1.5)[0]
     assert towards_rigid == pytest.approx(fits.SOFTENING, rel=1e-4)
     assert (1 - atlas.jump_on(300.0).take_off.approach) / 300 ** (3 / 7) == pytest.approx(fits.ATTRACTION, rel=3e-8)
-    assert pytest.approx(BIRTH, abs=1e-8) == fits.BIRTH
+    assert pytest.approx(BIRTH, abs=1e-11) == fits.BIRTH
 
 
 def test_there_are_no_jumps_below_the_birth_of_folds():
