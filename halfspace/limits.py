@@ -32,6 +32,15 @@ def require_number(value: object, name: str) -> float:
         raise InputError(f"{name} has {len(str(value))} digits, limit: 1.8e308; give a float") from error
 
 
+def require_numbers(values: object, name: str) -> Array:
+    """Return a real number, or an array of them, as an array, or raise InputError for what is none."""
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        shown = " ".join(reprlib.repr(values).split())
+        raise InputError(f"{name} = {shown}, limit: a real number or an array of them; give floats") from error
+
+
 def require_between(value: object, name: str, least: float, most: float, remedy: str, of: str = "") -> float:
     """Return a real number of any type as a float, or raise InputError unless it is finite and in a range.
 

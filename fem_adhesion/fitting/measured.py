@@ -101,8 +101,10 @@ def read(
     spring = SPRING.search(text)
     own = parse(spring[1].strip(), "stiffness") if spring else None
     lines = [(at, line) for at, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
-    if len(lines) < 2 * FEWEST:
-        raise InputError(f"{path} has {counted(len(lines), 'line')} of data, limit: {2 * FEWEST}; give more points")
+    if len(lines) <= 2 * FEWEST:  # the first is the header
+        raise InputError(
+            f"{path} has {counted(max(len(lines) - 1, 0), 'line')} of data, limit: {2 * FEWEST}; give more points"
+        )
     header = lines[0][1]
     delimiter = max(",;\t", key=header.count)
     names = [name.strip() for name in header.split(delimiter)]

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from halfspace.atlas.series import EDGE, Series, require_tabors, series, summed
 from halfspace.branches import ENDS, WHOLE, branch_names, chosen_branch
 from halfspace.errors import InputError
-from halfspace.limits import require_number, require_one_of
+from halfspace.limits import require_number, require_numbers, require_one_of
 from halfspace.values import Array, Index, States, Valued
 
 PARTS = 3  # pieces of a curve without contact, and as many with
@@ -98,7 +98,7 @@ class Curve(Valued):
             If there is no such state, or there are several.
         """
         asked = {"approach": approach, "load": load, "base": base}
-        given = [(name, np.asarray(values, dtype=float)) for name, values in asked.items() if values is not None]
+        given = [(name, require_numbers(values, name)) for name, values in asked.items() if values is not None]
         if len(given) != 1:
             names = " and ".join(name for name, _ in given) or "nothing"
             raise InputError(f"a state is asked for by {names}, limit: one of {', '.join(asked)}; give that one")

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.errors import InputError
+from halfspace.limits import require_numbers
 from halfspace.values import Array, Index, Valued
 
 LEAST, MOST = 0.01, 300.0  # Tabor parameters that the atlas covers
@@ -112,12 +113,14 @@ def series_of(entry: dict[str, Any]) -> Series:
 
 def require_tabors(tabor: ArrayLike) -> Array:
     """Tabor parameters as an array, or InputError if one is outside the atlas."""
-    values = np.asarray(tabor, dtype=float)
+    values = require_numbers(tabor, "tabor")
     outside = ~((values >= LEAST) & (values <= MOST))
     if outside.any():
         worst = values[outside].flat[0]
-        remedy = (
-            "halfspace.trace serves down to 1e-12" if worst < LEAST else "use JKR's theory in halfspace.theories above"
-        )
+        remedy = "give the Tabor parameter of the contact"  # of what is none: zero, negative or nan
+        if worst > 0:
+            remedy = "halfspace.trace serves down to 1e-12"
+        if worst > MOST:
+            remedy = "use JKR's theory in halfspace.theories above"
         raise InputError(f"tabor = {worst:.9g} is outside the atlas, {LEAST:g} <= tabor <= {MOST:g}; {remedy}")
     return values

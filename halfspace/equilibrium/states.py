@@ -39,6 +39,7 @@ from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, solved_point
 from halfspace.equilibrium.search import Chains, confirmed, turns
 from halfspace.errors import InputError, NotConverged, Unsolved, required
+from halfspace.limits import require_numbers
 from halfspace.values import Array, States, Valued
 
 T = TypeVar("T")
@@ -209,7 +210,7 @@ class FinestCurve(Valued):
 
     def at(self, coordinate: str, values: ArrayLike, branch: str | None) -> States:
         """States on a branch where a coordinate has given values."""
-        wanted = np.asarray(values, dtype=float)
+        wanted = require_numbers(values, coordinate)
         found = [self._at(coordinate, float(value), branch) for value in wanted.ravel()]
         numbers = np.array(found).reshape(-1, 8).T.reshape(8, *wanted.shape)
         return States(*(number[()] for number in numbers))
@@ -362,4 +363,7 @@ def _spread(segment: Segment, places: Array, metric: Metric) -> Iterator[Point]:
     for place in places:
         i = int(np.clip(np.searchsorted(s, place) - 1, 0, s.size - 2))
         a, b = points[i], points[i + 1]
+        if place in (a.arclength, b.arclength):  # the end itself, which solving anew would move by its rounding
+            yield a if place == a.arclength else b
+            continue
         yield required(part_way(problem, a, b, (place - a.arclength) / (b.arclength - a.arclength), metric))

@@ -69,7 +69,7 @@ def test_a_study_is_resumed_and_a_changed_file_fitted_again(curves, tmp_path):
 
 def test_a_curve_that_cannot_be_used_is_told_and_ends_nothing(curves):
     (bad,) = run([Source(curves / "first.csv")], READING, ASKED, work=outcome, jobs=1)
-    assert "1 line of data" in bad["reason"]
+    assert "0 lines of data" in bad["reason"]
     assert "model" not in bad
 
 

@@ -171,7 +171,7 @@ REFUSED = {
     "unit of the wrong kind": {"piezo_m": TRAVEL, "force_V": LOADED},
     "force_N and deflection_V": {"piezo_m": TRAVEL, "force_N": LOADED, "deflection_V": LOADED},
     "give the stiffness": {"piezo_m": TRAVEL, "deflection_m": LOADED},
-    "give more points": {"piezo_m": TRAVEL[::30], "force_N": LOADED[::30]},
+    "99 lines of data, limit: 100; give more points": {"piezo_m": TRAVEL[:99], "force_N": LOADED[:99]},
     "line 12": {"piezo_m": TRAVEL, "force_N": np.where(np.arange(2000) == 10, np.nan, LOADED)},
     "a travel": {"time_s": TRAVEL, "force_N": LOADED},
 }

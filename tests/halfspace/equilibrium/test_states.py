@@ -94,6 +94,7 @@ def test_every_crossing_of_a_winding_curve_is_found(paths):
         ({"approach": -2, "branch": "separated"}, "<= approach <= -2.5519. eps on separated; take one inside"),
         ({"load": [1.0, 1e9]}, r"load = 1e\+09 is outside -4.975.. <= load <= .* R dgamma on this curve"),
         ({"central_gap": np.nan}, "central_gap = nan is outside"),
+        ({"load": "none"}, "load = 'none', limit: a real number or an array of them; give floats"),
     ],
 )
 def test_what_is_not_there_is_refused_in_one_line(paths, asked, message):
@@ -214,6 +215,17 @@ def test_a_curve_takes_any_number_of_points(paths):
     np.testing.assert_allclose(
         path.load[1:-1], paths[5.0].at(central_gap=path.central_gap[1:-1]).load, rtol=0, atol=1e-6
     )
+
+
+def test_both_ends_of_a_curve_with_another_number_of_points_are_on_it():
+    """They were solved for anew, and lay beyond the curve by rounding: its own branch refused them."""
+    path = halfspace.trace(2.5, rtol=1e-4)
+    ends = path.resampled(2)
+    for coordinate in ("approach", "load", "central_gap"):
+        for end, branch in zip((0, -1), ("separated", "contact"), strict=True):
+            value = getattr(ends, coordinate)[end]
+            assert value == getattr(path, coordinate)[end]
+            assert path.at(**{coordinate: value}, branch=branch).load == ends.load[end]
 
 
 @pytest.mark.parametrize("count", [1, 2.5, 10_001])
