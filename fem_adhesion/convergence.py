@@ -195,7 +195,7 @@ def _trace_on_given_mesh(scene: Scene, file: Path, rtol: float, to_load: float) 
     mesh, unit = read_scaled(file)
     _require_smooth(mesh, unit, scene, rtol)
     try:
-        return climb(rtol, partial(mesh_ladder, scene, unit), to_load=to_load, most_rungs=1)
+        return climb(rtol, partial(mesh_ladder, scene, unit, rtol), to_load=to_load, most_rungs=1)
     except GridTooCoarse as error:
         raise _in_the_files_unit(error, scene, unit) from error
 
@@ -217,12 +217,13 @@ def _require_smooth(mesh: Any, unit: float, scene: Scene, rtol: float) -> None:
     )
 
 
-def mesh_ladder(scene: Scene, unit: float, level: int) -> Rung:
+def mesh_ladder(scene: Scene, unit: float, rtol: float, level: int) -> Rung:
     """Rung of a level: the mesh, each cell cut into four as often as the level says, with quadratic elements."""
     made = on_given_mesh(scene, level)
     charts = (Chart(made.problem, made.unknowns),)
     settings = {"mesh": str(scene.body.file), "pole_radius": unit, "degree": QUADRATIC.degree, "refined": level}
-    return Rung(partial(tuple, charts), (Charted(charts),) if level else (), settings, rule=ErrorRule(1.0))
+    rule = ErrorRule(1.0, least=LEAST * rtol)
+    return Rung(partial(tuple, charts), (Charted(charts),) if level else (), settings, rule=rule)
 
 
 QUADRATIC = Discretisation(2)

@@ -34,6 +34,7 @@ from halfspace.elastic.compliance import collocated
 from halfspace.elastic.grid import FLAT
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import LEAST, ErrorRule
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array
@@ -185,7 +186,8 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
         body, other = (sized_body(scene, how, to_load) for how in (above, twin))
         settings = {"nodes": above.nodes, "harmonics": counts(scene, above)}
         own, others = standing(body, left_between(above.nodes)), standing(other, left_between(below.nodes))
-        return Rung(curve.curve, (own,), settings, others if level else None)
+        rule = ErrorRule(steps=scene.scales.steps, least=LEAST * rtol)
+        return Rung(curve.curve, (own,), settings, others if level else None, rule=rule)
 
     return climb(rtol, rung, to_load=to_load, most_rungs=2)
 
@@ -206,8 +208,8 @@ def require_few(scene: Scene, rtol: float) -> None:
     """Refuse a scene that is not ``checked_by`` harmonics, or takes too many; raise InputError."""
     if scene.checked_by != "harmonics":
         raise InputError(
-            f"scene = {', '.join(scene.words)} is not known to harmonics, limit: linear hemispheres that slide, all "
-            "tractions per projected area; take fem_adhesion.trace"
+            f"scene = {', '.join(scene.words)} is not known to harmonics, limit: linear hemispheres that slide, no "
+            "pointed tip, all tractions per projected area; take fem_adhesion.trace"
         )
     most = max(counts(scene, resolution_for(rtol, 1)))
     if most > MOST:

@@ -119,9 +119,13 @@ class Scene:
 
     @property
     def checked_by(self) -> SolverName | None:
-        """Solver without finite elements that knows every body, see `fem_adhesion.crosscheck.references`."""
+        """Solver without finite elements that knows every body, see `fem_adhesion.crosscheck.references`.
+
+        Harmonics are not asked about a pointed tip: half of its gap's error on the axis was left by a decade of rtol,
+        up to 2.2 times the estimate.
+        """
         known = [body.checked_by for body in (self.body, self.counter) if body]
-        return known[0] if all(known) else None
+        return known[0] if all(known) and not ("harmonics" in known and self.surface.pointed) else None
 
     @property
     def for_half_space(self) -> dict[str, Any]:

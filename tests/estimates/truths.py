@@ -95,7 +95,7 @@ def _layered(scene, nodes, finest, growth, far, spacing, last):
     last = last * outer if outer == profile.end else np.inf
     first = at_tip(profile, nodes)
     how = finest, growth, np.array([outer]), FLAT, last
-    return standing(SizedBody(scales, make, *how, first=first), LEFT)
+    return standing(SizedBody(scales, make, *how, first=first, strip=np.pi / 2), LEFT)
 
 
 FARTHEST = 1e8  # times, to which a tail goes on
