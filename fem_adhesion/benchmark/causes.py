@@ -33,7 +33,7 @@ BOXES: Mapping[str, float] = {
     "free at beta/L of": -CLAMPED,
     "attracting no farther than beta/L of": 0.0,
 }
-ACTS = ("Tabor parameter", "loads", "radii")
+ACTS = ("Tabor parameter", "loads", "radii", "energies")
 
 
 @dataclass(frozen=True)
@@ -72,9 +72,9 @@ def variants() -> Iterator[Variant]:
                 f"{name} by {ends[0] ** power:.3g}" for name, power in zip(ACTS, powers, strict=True) if power
             )
             yield Variant(row["cause"], "E/E* of" if last else acts, partial(_constant, powers), ends)
-    for row in data_rows("benchmark", "approaches.csv"):
-        parts = [float(row[name]) for name in ("one", "approach", "reduced", "gap")]
-        yield Variant("displacement-for-approach", row["what"], partial(_instead, parts))
+    for row in data_rows("benchmark", "conventions.csv"):
+        parts = [float(row[name]) for name in ("one", "own", "reduced", "gap")]
+        yield Variant(row["cause"], row["what"], partial(_instead, row["of"], parts), needs=row["of"])
     yield Variant("load-control-tear-off", "the pull-off given as the jump off", _torn, needs="jump_off")
     yield Variant("hertz-radius-in-jkr", "JKR's force with a^2 = R alpha", partial(_theory, _musen))
     yield Variant("jkr-for-intermediate", "JKR's closed forms", partial(_theory, _jkr))
@@ -166,23 +166,24 @@ def _sampled(late: int, few: bool, problem: Problem, step: float) -> Prediction 
 
 
 def _constant(powers: list[float], problem: Problem, factor: float) -> Prediction | None:
-    """A constant that is wrong by a factor moves the Tabor parameter, and the units of loads and radii."""
-    tabor, load, radius = (factor**power for power in powers)
+    """A constant that is wrong by a factor moves the Tabor parameter, and the units of loads, radii and energies."""
+    tabor, load, radius, energy = (factor**power for power in powers)
     values = right(problem)
     if tabor != 1:
         if not (problem.in_atlas and LEAST <= problem.scene.tabor * tabor <= MOST):
             return None
         values = {name: number.value for name, number in by_atlas(problem.scene.tabor * tabor).items()}
-    sizes = {"load": load, "energy": load, "contact_radius": radius}
+    sizes = {"load": load, "energy": energy, "contact_radius": radius}
     return {name: value * sizes.get(KINDS[name], 1.0) for name, value in values.items()}, {}
 
 
-def _instead(parts: list[float], problem: Problem, _: float) -> Prediction:
-    one, alpha, reduced, gap = parts
+def _instead(kind: str, parts: list[float], problem: Problem, _: float) -> Prediction:
+    """Numbers of a kind by another convention: so many times 1, the number, that over mu, and the central gap."""
+    one, own, reduced, gap = parts
     values = right(problem)
-    for name in [name for name in values if name.endswith("_approach")]:
-        central = values.get(name.replace("approach", "central_gap"), math.nan)
-        values[name] = one + (alpha + reduced / problem.scene.tabor) * values[name] + gap * central
+    for name in [name for name in values if name.endswith(f"_{kind}")]:
+        central = values.get(name.replace(kind, "central_gap"), math.nan) if gap else 0.0
+        values[name] = one + (own + reduced / problem.scene.tabor) * values[name] + gap * central
     return values, {}
 
 

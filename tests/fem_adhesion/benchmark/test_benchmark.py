@@ -44,11 +44,19 @@ def replaced(values, source, target):
     return values | {name.replace(source, target): v for name, v in values.items() if name.startswith(source)}
 
 
-def central_gaps(tabor, sign):
+def gaps_of(tabor):
     on, off = atlas.jump_on(tabor).take_off, atlas.jump_off(tabor).take_off
     states = {"pull_off": atlas.pull_off(tabor), "zero_load": atlas.zero_load(tabor), "jump_on": on, "jump_off": off}
-    gaps = {f"{name}_approach": sign * float(state.central_gap) for name, state in states.items()}
+    return {name: float(state.central_gap) for name, state in states.items()}
+
+
+def central_gaps(tabor, sign):
+    gaps = {f"{name}_approach": sign * gap for name, gap in gaps_of(tabor).items()}
     return {name: gaps.get(name, value) for name, value in defective.true(tabor).items()}
+
+
+def distances(tabor):
+    return defective.true(tabor) | {f"{name}_central_gap": 1 + gap for name, gap in gaps_of(tabor).items()}
 
 
 def scaled_loads(tabor, factor):
@@ -71,6 +79,10 @@ DEFECTS = [
     ("radius-of-one-body", 4.5, lambda mu: defective.mistaken(mu, radius=2.0), 8),
     ("displacement-for-approach", 0.5, lambda mu: central_gaps(mu, -1), 5),
     ("displacement-for-approach", 5.328, lambda mu: central_gaps(mu, 1), 3),
+    ("distance-for-gap", 0.9, distances, 5),
+    ("distance-for-gap", 2.2, distances, 4),
+    ("sign-of-loads", 0.5, lambda mu: scaled_loads(mu, -1.0), 6),
+    ("sign-of-loads", 2.0, lambda mu: scaled_loads(mu, -1.0), 4),
     ("load-control-tear-off", 1.6, lambda mu: replaced(defective.true(mu), "pull_off", "jump_off"), 5),
     ("hertz-radius-in-jkr", 3.0, lambda mu: defective.hertz_radius(mu), 5),
     ("jkr-for-intermediate", 0.8, lambda mu: defective.jkr(mu), 4),
