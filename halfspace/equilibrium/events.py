@@ -224,9 +224,13 @@ class ErrorRule:
     least: float = 0.0
 
     def change(self, chain: Sequence[Array | float]) -> Array:
-        """Sum of the changes along a chain of two values or more, arrays (...) or numbers, each by its part."""
+        """Sum of the changes along a chain of two values or more, arrays (...) or numbers, each by its part.
+
+        Changes from or to nan, a radius without contact, do not count beside others; nan if there are no others.
+        """
         changes = np.abs(np.diff(np.array(chain), axis=0))
-        return np.asarray(np.tensordot(self.parts[-len(changes) :] or np.ones(len(changes)), changes, 1))
+        parts = self.parts[-len(changes) :] or np.ones(len(changes))
+        return np.where(np.isnan(changes).all(axis=0), np.nan, np.tensordot(parts, np.nan_to_num(changes), 1))
 
     def estimate(self, chains: Sequence[Sequence[float]], sizes: float) -> Estimate:
         """Of a number, by the chain along which it changes most, and what rounding leaves of terms of such sizes."""
@@ -272,8 +276,10 @@ def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Array:
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
     gap, radius = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
     alone = rule.along or len(chains) == 1
-    errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], [gap if alone else 0.0, radius])
-    return np.asarray(np.maximum(errors, rule.least * (OWN + np.abs(best.point.observables))))
+    errors[AT_A_POINT] = np.maximum(errors[AT_A_POINT], np.nan_to_num([gap if alone else 0.0, radius]))
+    sizes = np.abs(best.point.observables)
+    errors = np.maximum(errors, rule.least * (OWN + sizes))
+    return np.where(np.isnan(errors), sizes, errors)  # of a contact that another discretisation does not have
 
 
 def _by_load(event: Located) -> Array:

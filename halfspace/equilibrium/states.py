@@ -284,13 +284,11 @@ class FinestCurve(Valued):
         if not chains:
             return _unbounded(point)
         errors = errors_of(chains, ladder.rule)
-        if (
-            not ladder.twin
-        ):  # one chain: the plane itself goes with the gap, which is known to its polynomial's end alone
-            rates, weights = np.abs(point.rates), self.metric.weights
-            errors = errors + rates * weights[CENTRAL_GAP] * rates[CENTRAL_GAP] * errors[CENTRAL_GAP]
-        lost = np.isnan(errors) & ~np.isnan(point.observables)  # a contact that only one discretisation has
-        return np.where(lost, np.abs(point.observables), errors)
+        if ladder.twin:
+            return errors
+        # One chain: the plane itself goes with the gap, which is known to its polynomial's end alone.
+        rates, weights = np.abs(point.rates), self.metric.weights
+        return errors + rates * weights[CENTRAL_GAP] * rates[CENTRAL_GAP] * errors[CENTRAL_GAP]
 
 
 PLANE = Condition(APPROACH)  # of a state that meets no condition but lies in a plane across the path

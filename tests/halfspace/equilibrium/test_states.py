@@ -12,7 +12,8 @@ from fem_adhesion import cli
 from halfspace import Coated
 from halfspace.equilibrium.charts import metric_for, placed
 from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ZERO_LOAD, Condition, Located
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS
+from halfspace.equilibrium.events import USUAL, errors_of
 from halfspace.equilibrium.path import correct
 from halfspace.equilibrium.search import states
 from halfspace.errors import InputError
@@ -286,3 +287,12 @@ def test_a_state_is_found_where_two_grids_are_far_apart():
         for rtol in (2e-5, 2e-7)
     )
     assert abs(coarse.approach - fine.approach) <= coarse.approach_error + fine.approach_error
+
+
+def test_a_contact_that_another_grid_lacks_is_known_to_its_own_size(paths):
+    """It was taken to be known to what its polynomials end with, 2,500 times too well. One farther back may lack it."""
+    apart, touching = (paths[2.0].stages[-1][name] for name in ("jump_on", "jump_off"))
+    radius = touching.point.observables[CONTACT_RADIUS]
+    assert errors_of([[apart, touching]], USUAL)[CONTACT_RADIUS] == radius
+    assert errors_of([[touching, touching], [apart, touching]], USUAL)[CONTACT_RADIUS] == radius
+    assert errors_of([[apart, touching, touching]], USUAL)[CONTACT_RADIUS] < 1e-3 * radius
