@@ -209,8 +209,7 @@ class ErrorRule:
     beside. `along` says whether the shift of an event along the path counts, see `estimate_event`: on grids that follow
     the contact, whose radius tells it precisely, and where there is no twin to guard against chance. `steps` says that
     it does for other numbers than those at a point alone, as under a law that ends by a step, where an integral over a
-    cell in which that stands errs this way or that by its place, or on a block compared with one other size: there a
-    number of all grids may agree by accident.
+    cell in which that stands errs this way or that by its place: there a number of all grids may agree by accident.
     `beyond` is the tension in R dgamma that acts beyond the cells of all discretisations, so that no change tells of
     it. No event is told to be known better than to `least` of its size: coarse grids may all agree by accident far
     below the accuracy that they were made for.

@@ -288,7 +288,7 @@ class FinestCurve(Valued):
             return errors
         # One chain: the plane itself goes with the gap, which is known to its polynomial's end alone.
         rates, weights = np.abs(point.rates), self.metric.weights
-        return errors + rates * weights[CENTRAL_GAP] * rates[CENTRAL_GAP] * errors[CENTRAL_GAP]
+        return np.asarray(errors + rates * weights[CENTRAL_GAP] * rates[CENTRAL_GAP] * errors[CENTRAL_GAP])
 
 
 PLANE = Condition(APPROACH)  # of a state that meets no condition but lies in a plane across the path
