@@ -63,10 +63,10 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     -------
     EquilibriumPath
         The curve and its events. Of a half-space, their error estimates add the change by a higher degree and by a
-        larger block, that is, they are distances from the half-space, not from the block; of another body they are the
-        change by a higher degree, beside that from other cells if it is bonded or held over a cap, or the tension ends
-        by a step, of a user's mesh that by a finer one. Points of the curve, and the states between them, are solved
-        for anew when they are asked for, see `EquilibriumPath.at`.
+        larger block, or from two smaller ones to one that is given: they are distances from the half-space, not from
+        the block. Of another body they are the change by a higher degree, beside that from other cells if it is bonded
+        or held over a cap, or the tension ends by a step, of a user's mesh that by a finer one. Points of the curve,
+        and the states between them, are solved for anew when they are asked for, see `EquilibriumPath.at`.
 
     Raises
     ------
@@ -92,7 +92,10 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
 
 
 def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
-    """Rung of a level: first the degree of the rung below on a larger block, then one degree more."""
+    """Rung of a level: first the degree of the rung below on a larger block, then one degree more.
+
+    A block of given size is compared with a second smaller one beside these.
+    """
     (above, size), (below, _) = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
     stages = tuple(Charted(block_charts(scene, how, size, to_load)) for how in ((below, above) if level else ()))
     curve = partial(block_charts, scene, above, size, to_load)
@@ -109,7 +112,8 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
 def resolution_for(scene: Scene, rtol: float, level: int) -> tuple[Discretisation, float]:
     """Discretisation of a level, and the size of the block in beta.
 
-    Events are right to about `rtol` at level 0 and a decade better at each above it.
+    Events are right to about `rtol` at level 0 and a decade better at each above it. A block of given size is that of
+    level 1.
     """
     degree = int(np.clip(np.ceil(-np.log10(rtol)), 3, 9)) + level
     larger, size = LARGER_ENDLESS if scene.body.endless else LARGER_HELD, scene.body.cut_off

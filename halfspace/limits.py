@@ -34,11 +34,10 @@ def require_number(value: object, name: str) -> float:
 
 def require_numbers(values: object, name: str) -> Array:
     """Return a real number, or an array of them, as an array, or raise InputError for what is none."""
-    try:
-        return np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
-        shown = " ".join(reprlib.repr(values).split())
-        raise InputError(f"{name} = {shown}, limit: a real number or an array of them; give floats") from error
+    if isinstance(values, np.ndarray) and values.dtype.kind in "iuf":
+        return values.astype(float)
+    numbers = np.asarray(values, dtype=object)
+    return np.array([require_number(one, name) for one in numbers.ravel()], dtype=float).reshape(numbers.shape)
 
 
 def require_between(value: object, name: str, least: float, most: float, remedy: str, of: str = "") -> float:
@@ -151,7 +150,7 @@ def require_radius(radius: float, tabor: float = math.inf) -> float:
     """Return the size of a block, or raise InputError unless the contact and its attraction fit in, and it in floats.
 
     A contact is 2 to 3 beta wide and a nearly rigid sphere attracts over some beta/sqrt(tabor); the error is estimated
-    from a smaller block, which must do, too.
+    from smaller blocks, the largest of which must do, too.
     """
     radius = require_number(radius, "radius")
     least = 5 * max(1.0, tabor**-0.5)

@@ -40,8 +40,8 @@ ACTS = ("Tabor parameter", "loads", "radii", "energies")
 class Variant:
     """A cause in one of the ways in which it occurs; its parameter is between the ends, if they differ.
 
-    A prediction is None of a problem for which it is not known at once. Of numbers whose names all lack what the cause
-    `needs` it says nothing.
+    A prediction is None of a problem for which it is not known at once. Of numbers in none of whose names what the
+    cause `needs` is found, a regular expression, it says nothing.
     """
 
     cause: str
@@ -74,7 +74,7 @@ def variants() -> Iterator[Variant]:
             yield Variant(row["cause"], "E/E* of" if last else acts, partial(_constant, powers), ends)
     for row in data_rows("benchmark", "conventions.csv"):
         parts = [float(row[name]) for name in ("one", "own", "reduced", "gap")]
-        yield Variant(row["cause"], row["what"], partial(_instead, row["of"], parts), needs=row["of"])
+        yield Variant(row["cause"], row["what"], partial(_instead, row["of"], parts), needs=f"_{row['of']}$")
     yield Variant("load-control-tear-off", "the pull-off given as the jump off", _torn, needs="jump_off")
     yield Variant("hertz-radius-in-jkr", "JKR's force with a^2 = R alpha", partial(_theory, _musen))
     yield Variant("jkr-for-intermediate", "JKR's closed forms", partial(_theory, _jkr))

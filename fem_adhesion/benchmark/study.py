@@ -9,6 +9,7 @@ chance fits do not win. Of a cause with several variants each has its share of t
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -157,7 +158,7 @@ def _fitted(variant: Variant, problem: Problem, rows: Sequence[Row]) -> Fit | No
         return np.nan_to_num((theirs - given) / scale, nan=1.0), np.minimum(spread, 1.0)
 
     first, last = (math.log(end) for end in variant.ends)
-    if not any(variant.needs in row.quantity for row in rows):
+    if not any(re.search(variant.needs, row.quantity) for row in rows):
         return None
     if not (variant.predict(problem, variant.ends[0]) and variant.predict(problem, variant.ends[1])):
         return None

@@ -39,7 +39,8 @@ How independent the two solvers are:
 
 A hemisphere that slides, or a pair, is compared with whole spheres in Legendre polynomials in the place of the
 half-space (`fem_adhesion.harmonics`), whose elasticity is summed mode by mode. Bonded bodies, spheres held over a cap
-and meshes of the user's have the weak form alone (`weak_bodies`); it shares with the solver what draws the mesh.
+or under a pointed tip, and meshes of the user's have the weak form alone (`weak_bodies`); it shares with the solver
+what draws the mesh.
 
 A quantity agrees only if the difference is within the sum of both error estimates and that sum is within the budget.
 Seven defects of one side - no hoop strain, E for E*, 2 pi r forgotten, half the shear modulus, a shifted approach,

@@ -1,7 +1,7 @@
 """The cross-check of the finite-element solver with one that shares no operator with it.
 
 That is the half-space's for half-spaces, blocks and layers, and the whole sphere by harmonics for hemispheres in the
-sliding grip. For other bodies the fourth level stands alone.
+sliding grip, unless the tip is pointed. For other bodies the fourth level stands alone.
 
 Four levels. Operators: both compliances under the same pressures, whole fields compared. Cross-residual: the state
 found by one solver put into the equations of the other. Events: pull-off, jumps, the zero-load state, the energy;

@@ -225,11 +225,14 @@ class ErrorRule:
     def change(self, chain: Sequence[Array | float]) -> Array:
         """Sum of the changes along a chain of two values or more, arrays (...) or numbers, each by its part.
 
-        Changes from or to nan, a radius without contact, do not count beside others; nan if there are no others.
+        It is nan where one of them is, as of a radius without contact; but those that count in part, being farther
+        back, are left out.
         """
         changes = np.abs(np.diff(np.array(chain), axis=0))
-        parts = self.parts[-len(changes) :] or np.ones(len(changes))
-        return np.where(np.isnan(changes).all(axis=0), np.nan, np.tensordot(parts, np.nan_to_num(changes), 1))
+        parts = np.array(self.parts[-len(changes) :] or np.ones(len(changes)))
+        back = np.flatnonzero(parts < 1)
+        changes[back] = np.where(np.isnan(changes[back]), 0.0, changes[back])
+        return np.asarray(np.tensordot(parts, changes, 1))
 
     def estimate(self, chains: Sequence[Sequence[float]], sizes: float) -> Estimate:
         """Of a number, by the chain along which it changes most, and what rounding leaves of terms of such sizes."""
@@ -278,7 +281,9 @@ def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Array:
     errors[AT_A_POINT] = np.maximum(errors[AT_A_POINT], np.nan_to_num([gap if alone else 0.0, radius]))
     sizes = np.abs(best.point.observables)
     errors = np.maximum(errors, rule.least * (OWN + sizes))
-    return np.where(np.isnan(errors), sizes, errors)  # of a contact that another discretisation does not have
+    if np.isnan(errors[CONTACT_RADIUS]):  # another discretisation has no contact
+        errors[CONTACT_RADIUS] = sizes[CONTACT_RADIUS]
+    return np.asarray(errors)
 
 
 def _by_load(event: Located) -> Array:

@@ -129,10 +129,10 @@ def _true(found):
 
 
 def by_two(pairs):
-    """Truth by the second of two grids, known to its change from the first; what one of them lacks is unknown."""
+    """Truth by the second of two grids, known to its change from the first; of a contact that one lacks nothing is."""
     rough, best = (dict(_true(found)) for found in pairs)
-    known = {w: abs(best[w] - rough[w]) if w in best and w in rough else math.inf for w in best | rough}
-    return {w: Estimate(best.get(w, math.nan), error) for w, error in known.items()}
+    lacking = {w: Estimate(math.nan, math.inf) for w in best.keys() ^ rough.keys() if "contact_radius" in w}
+    return {w: Estimate(v, abs(v - rough.get(w, math.nan))) for w, v in best.items()} | lacking
 
 
 def traced(stages, scene, *_):

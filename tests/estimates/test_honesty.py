@@ -58,10 +58,12 @@ def test_a_number_that_is_not_told_or_has_no_truth_lies_outside():
 
 def test_a_radius_that_one_of_two_true_grids_lacks_is_not_judged():
     """Beside a fold one grid of a block was in contact and the other was not."""
-    one, other = {"gap": 0.2, "radius": math.nan}, {"gap": 0.1, "radius": 0.3}
+    told = {"gap": Estimate(0.15, 0.01), "contact_radius": Estimate(0.3, 0.01)}
+    one, other = {"gap": 0.2, "contact_radius": math.nan}, {"gap": 0.1, "contact_radius": 0.3}
     for pair in ((one, other), (other, one)):
-        told = {"gap": Estimate(0.15, 0.01), "radius": Estimate(0.3, 0.01)}
-        assert {n.what: n.ratio for n in judge(told, families.by_two(pair))} == {"gap": 0.0, "radius": 0.0}
+        judged = {n.what: n.ratio for n in judge(told, families.by_two(pair))}
+        assert judged == {"gap": 0.0, "contact_radius": 0.0}
+    assert judge({"gap": told["gap"]}, families.by_two(({}, {"gap": 0.15})))[0].ratio == math.inf
 
 
 def row(*numbers, drawn=False, ends=(), seconds=1.0, memory=1.0):

@@ -122,6 +122,12 @@ def test_sound_numbers_raise_no_alarm(judged, seed):
     assert (found["cause"], found["alike"]) == ("sound", [])
 
 
+def test_a_convention_of_loads_is_not_named_where_none_is_given(judged):
+    values = {name: value for name, value in defective.true(0.7).items() if not name.endswith("_load")}
+    found = judged(of_problem(0.7, defective.rounded(values, 6)))
+    assert (found["cause"], found["alike"]) == ("sound", [])
+
+
 def test_numbers_a_per_cent_off_are_not_sound(judged):
     found = judged(of_problem(0.5, defective.rounded(defective.true(0.5), 12, noise=0.01, seed=3)))
     assert found["cause"] == "cannot-tell"

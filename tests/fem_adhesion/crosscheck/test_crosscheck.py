@@ -10,7 +10,7 @@ from whole_runs import COMPARE
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Block, HalfSpace, Scene, convergence, discretise
+from fem_adhesion import Block, HalfSpace, Hemisphere, Scene, convergence, discretise
 from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.crosscheck import comparison, from_scratch, references
 from fem_adhesion.crosscheck import scenes as beside
@@ -18,7 +18,7 @@ from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Case, Row
 from fem_adhesion.elasticity import cells
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.errors import NotConverged
+from halfspace.errors import InputError, NotConverged
 from halfspace.laws import Morse, PowerLaw
 from halfspace.values import Estimate
 
@@ -184,6 +184,24 @@ def test_what_estimates_leave_open_is_asked_more_closely(rtol, closer, monkeypat
     assert [row.quantity for row in case.rows if row.between == comparison.SOLVERS and row.verdict != "agree"] == []
     assert asked == pytest.approx([0.9 * rtol / times for times in closer])
     assert [path is solved[-1] for path in judged] == [True]
+
+
+def test_a_comparison_with_harmonics_is_asked_more_closely_while_they_are_few(monkeypatch):
+    asked, wide = [], Estimate(1.0, 2.5 * RTOL)
+
+    def solved(scene, _, closer, __):
+        asked.append(closer)
+        if len(asked) == 3:
+            raise InputError("radius_ratio takes 6000 harmonics of the sphere, limit 5000")
+        row = Row("pull_off load", "R dgamma", wide, wide, 0.0, RTOL, comparison.HARMONICS)
+        return None, Case(scene, {}, (row,))
+
+    monkeypatch.setattr(crosscheck, "_solved", solved)
+    for module, rows in ((crosscheck, "_by_triangles"), (crosscheck.elimination, "rows"), (from_scratch, "events")):
+        monkeypatch.setattr(module, rows, lambda *_: [])
+    case = crosscheck.compare(Scene(1.0, Hemisphere(radius_ratio=30.0)), rtol=RTOL, before=())
+    assert asked == pytest.approx([RTOL, RTOL / 10, RTOL / 100])
+    assert case.verdict == "inconclusive"
 
 
 @pytest.mark.usefixtures("two_solvers")

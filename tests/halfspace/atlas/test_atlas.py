@@ -202,7 +202,7 @@ def test_what_is_outside_is_refused(event):
     ):
         with pytest.raises(InputError, match=rf"outside the atlas, 0.01 <= tabor <= 300; .*{remedy}"):
             event(outside)
-    with pytest.raises(InputError, match="tabor = 'one', limit: a real number or an array of them"):
+    with pytest.raises(InputError, match="tabor = 'one' of type str, limit: a real number"):
         event("one")
     for inside in (0.01, 300.0):
         event(inside)

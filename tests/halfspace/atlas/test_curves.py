@@ -108,7 +108,7 @@ def test_what_there_is_not_is_refused():
         ({"approach": 1, "load": 0}, "asked for by approach and load"),
         ({"approach": -3.0}, "approach = -3 eps is met on separated, unstable, contact, limit: one"),
         ({"approach": [1.0, 999.0]}, r"approach = 999 is outside .* eps on this curve; take one inside"),
-        ({"load": "none"}, "load = 'none', limit: a real number or an array of them; give floats"),
+        ({"load": "none"}, "load = 'none' of type str, limit: a real number; give a float"),
         ({"approach": 1.0, "branch": "separated"}, r"outside .* on separated"),
         ({"approach": 1.0, "branch": "middle"}, 'branch = "middle" is none of separated, unstable, contact'),
         ({"base": 1.0, "stiffness": 0.0}, "stiffness = 0 is outside 0 < stiffness"),

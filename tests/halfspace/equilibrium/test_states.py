@@ -13,7 +13,7 @@ from halfspace import Coated
 from halfspace.equilibrium.charts import metric_for, placed
 from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ZERO_LOAD, Condition, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS
-from halfspace.equilibrium.events import USUAL, errors_of
+from halfspace.equilibrium.events import USUAL, ErrorRule, errors_of
 from halfspace.equilibrium.path import correct
 from halfspace.equilibrium.search import states
 from halfspace.errors import InputError
@@ -95,7 +95,7 @@ def test_every_crossing_of_a_winding_curve_is_found(paths):
         ({"approach": -2, "branch": "separated"}, "<= approach <= -2.5519. eps on separated; take one inside"),
         ({"load": [1.0, 1e9]}, r"load = 1e\+09 is outside -4.975.. <= load <= .* R dgamma on this curve"),
         ({"central_gap": np.nan}, "central_gap = nan is outside"),
-        ({"load": "none"}, "load = 'none', limit: a real number or an array of them; give floats"),
+        ({"load": "none"}, "load = 'none' of type str, limit: a real number; give a float"),
     ],
 )
 def test_what_is_not_there_is_refused_in_one_line(paths, asked, message):
@@ -295,4 +295,7 @@ def test_a_contact_that_another_grid_lacks_is_known_to_its_own_size(paths):
     radius = touching.point.observables[CONTACT_RADIUS]
     assert errors_of([[apart, touching]], USUAL)[CONTACT_RADIUS] == radius
     assert errors_of([[touching, touching], [apart, touching]], USUAL)[CONTACT_RADIUS] == radius
-    assert errors_of([[apart, touching, touching]], USUAL)[CONTACT_RADIUS] < 1e-3 * radius
+    assert errors_of([[apart, touching, touching]], USUAL)[CONTACT_RADIUS] == radius
+    back = ErrorRule(parts=(0.2, 1.0, 1.0))
+    assert errors_of([[apart, touching, touching, touching]], back)[CONTACT_RADIUS] < 1e-3 * radius
+    assert errors_of([[touching, apart, touching, touching]], back)[CONTACT_RADIUS] == radius
