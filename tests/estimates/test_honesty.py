@@ -23,6 +23,8 @@ from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.search import energy_released, find_events
 from halfspace.errors import InputError, NotConverged
+from halfspace.laws import Morse
+from halfspace.profiles import Power
 from halfspace.scales import Scales
 from halfspace.values import Estimate
 
@@ -64,6 +66,14 @@ def test_a_radius_that_one_of_two_true_grids_lacks_is_not_judged():
         judged = {n.what: n.ratio for n in judge(told, families.by_two(pair))}
         assert judged == {"gap": 0.0, "contact_radius": 0.0}
     assert judge({"gap": told["gap"]}, families.by_two(({}, {"gap": 0.15})))[0].ratio == math.inf
+
+
+def test_a_true_state_is_on_the_branch_of_the_one_asked_for():
+    """By the central gap alone, which hardly differs there, it was the one before the jump off."""
+    steep = Scene(18.4, profile=Power(5.83), law=Morse(2.72))
+    path = fem_adhesion.trace(steep, rtol=0.034)
+    state = truths.state_of(path, "approach", "contact", -3.89)
+    assert state.point.observables[1] == pytest.approx(float(path.at(approach=-3.89, branch="contact").load), abs=0.1)
 
 
 def row(*numbers, drawn=False, ends=(), seconds=1.0, memory=1.0):

@@ -24,7 +24,7 @@ from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.equilibrium.charts import placed, trace_charts
 from halfspace.equilibrium.conditions import FOLD, Condition, Located
-from halfspace.equilibrium.contact import CENTRAL_GAP, OBSERVABLES
+from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.events import is_event, numbered
 from halfspace.equilibrium.search import brackets_of, energy_released, find_events, with_care
 from halfspace.errors import required
@@ -171,7 +171,8 @@ def state_of(path, coordinate, branch, value):
     """The state at a value of a coordinate on a branch of a path, on the grid on which it was traced."""
     asked = path.at(**{coordinate: value}, branch=branch)
     there = path.states(Condition(OBSERVABLES.index(coordinate), value=value))
-    return min(there, key=lambda state: abs(state.point.observables[CENTRAL_GAP] - asked.central_gap))
+    place = np.array([asked.approach, asked.load, asked.central_gap])
+    return min(there, key=lambda state: np.abs(state.point.observables[: place.size] - place).sum())
 
 
 def points_on(stage, path, places):
