@@ -118,7 +118,7 @@ def of_assessment(assessment):
 def of_comparison(case, bad=("inconclusive", "disagree")):
     """The rows of a comparison, and why it failed, each as 1 if that is bad, else 0."""
     rows = {f"{row.quantity}, {row.verdict}": Estimate(float(row.verdict in bad), 0.0) for row in case.rows}
-    return rows | ({case.reason: Estimate(1.0, 0.0)} if hasattr(case, "reason") else {})
+    return rows | ({case.reason: Estimate(1.0, 0.0)} if case.reason else {})
 
 
 # Their truths

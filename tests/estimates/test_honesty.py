@@ -19,6 +19,7 @@ from judging import Answered, Family, Judged, Net, Row, judge, rows_of
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
+from fem_adhesion.crosscheck import comparison
 from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.search import energy_released, find_events
@@ -74,6 +75,15 @@ def test_a_true_state_is_on_the_branch_of_the_one_asked_for():
     path = fem_adhesion.trace(steep, rtol=0.034)
     state = truths.state_of(path, "approach", "contact", -3.89)
     assert state.point.observables[1] == pytest.approx(float(path.at(approach=-3.89, branch="contact").load), abs=0.1)
+
+
+def test_a_comparison_is_bad_where_a_row_is_or_where_it_failed():
+    """Every case counted as failed, of which no run of these families had told."""
+    one = Estimate(1.0, 0.0)
+    rows = [comparison.Row(what, "eps", one, one, off, 1.0) for what, off in (("load", 0.0), ("gap", 1.0))]
+    told = families.of_comparison(comparison.Case(Scene(1.0), {}, tuple(rows)))
+    assert {what: number.value for what, number in told.items()} == {"load, agree": 0.0, "gap, disagree": 1.0}
+    assert families.of_comparison(comparison.Case(Scene(1.0), reason="lost"))["lost"].value == 1.0
 
 
 def row(*numbers, drawn=False, ends=(), seconds=1.0, memory=1.0):
