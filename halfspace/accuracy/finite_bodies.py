@@ -50,7 +50,8 @@ class ChartSettings:
     together: int = 4  # grids integrated at once: with all of a curve's it took 0.18 GB more, and no less time
     across: float = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
     roughly: float = 1e-3  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again
-    around: float = 1.005  # by which contact radii differ from where a chart for one event is made; 4 operators
+    around: float = 1.05  # by which contact radii differ from where a chart for one event is made; with 1.005 and four
+    # operators for six rates err ten times as much, and a flat pull-off with them: 1.5 times outside on a coating
     steps: int = 25  # per unit of the logarithm: charts end where those of like contacts do, to be the same
 
 
