@@ -31,7 +31,7 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import LEAST, ErrorRule
+from halfspace.equilibrium.events import ErrorRule
 from halfspace.errors import GridTooCoarse
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array
@@ -99,7 +99,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     (above, size), (below, _) = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
     stages = tuple(Charted(block_charts(scene, how, size, to_load)) for how in ((below, above) if level else ()))
     curve = partial(block_charts, scene, above, size, to_load)
-    coarser, rule = None, ErrorRule(1.0, least=LEAST * rtol)
+    coarser, rule = None, ErrorRule(1.0)
     if scene.body.cut_off is not None and level:
         # There is but one other size: where both are small a number may be alike on them by accident, which a third
         # tells. Without it a contact radius was 4 times outside on a block of 21 beta, an energy 1.3 times.
@@ -174,7 +174,6 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
             along=True,
             steps=scene.scales.steps,
             beyond=scene.tension_beyond,
-            least=LEAST * rtol,
         ),
     )
 
@@ -201,7 +200,7 @@ def _trace_on_given_mesh(scene: Scene, file: Path, rtol: float, to_load: float) 
     mesh, unit = read_scaled(file)
     _require_smooth(mesh, unit, scene, rtol)
     try:
-        return climb(rtol, partial(mesh_ladder, scene, unit, rtol), to_load=to_load, most_rungs=1)
+        return climb(rtol, partial(mesh_ladder, scene, unit), to_load=to_load, most_rungs=1)
     except GridTooCoarse as error:
         raise _in_the_files_unit(error, scene, unit) from error
 
@@ -223,13 +222,12 @@ def _require_smooth(mesh: Any, unit: float, scene: Scene, rtol: float) -> None:
     )
 
 
-def mesh_ladder(scene: Scene, unit: float, rtol: float, level: int) -> Rung:
+def mesh_ladder(scene: Scene, unit: float, level: int) -> Rung:
     """Rung of a level: the mesh, each cell cut into four as often as the level says, with quadratic elements."""
     made = on_given_mesh(scene, level)
     charts = (Chart(made.problem, made.unknowns),)
     settings = {"mesh": str(scene.body.file), "pole_radius": unit, "degree": QUADRATIC.degree, "refined": level}
-    rule = ErrorRule(1.0, least=LEAST * rtol)
-    return Rung(partial(tuple, charts), (Charted(charts),) if level else (), settings, rule=rule)
+    return Rung(partial(tuple, charts), (Charted(charts),) if level else (), settings, rule=ErrorRule(1.0))
 
 
 QUADRATIC = Discretisation(2)

@@ -34,7 +34,7 @@ from halfspace.elastic.compliance import collocated
 from halfspace.elastic.grid import FLAT
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import LEAST, ErrorRule
+from halfspace.equilibrium.events import ErrorRule
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array
@@ -186,7 +186,7 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
         body, other = (sized_body(scene, how, to_load) for how in (above, twin))
         settings = {"nodes": above.nodes, "harmonics": counts(scene, above)}
         own, others = standing(body, left_between(above.nodes)), standing(other, left_between(below.nodes))
-        rule = ErrorRule(steps=scene.scales.steps, least=LEAST * rtol)
+        rule = ErrorRule(steps=scene.scales.steps)
         return Rung(curve.curve, (own,), settings, others if level else None, rule=rule)
 
     return climb(rtol, rung, to_load=to_load, most_rungs=2)

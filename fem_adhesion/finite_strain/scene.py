@@ -36,7 +36,7 @@ from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, 
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import LEAST, REMAINING, ErrorRule, Event
+from halfspace.equilibrium.events import REMAINING, ErrorRule, Event
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged, Unsolved
@@ -113,7 +113,7 @@ class Stages(Valued):
         stages = tuple(Raising(one, partial(Stages.windows, self, one.how.degree)) for one in bodies)
         left, parts = REMAINING / self.scene.scales.gradual, (1.0, self.settings.other_cells)
         settings = {"linear": linear, **asdict(bodies[-1].how)}
-        rule = ErrorRule(left, parts=parts, along=True, least=LEAST * rtol)
+        rule = ErrorRule(left, parts=parts, along=True)
         return Rung(curve, stages, settings, rule=rule)
 
     def charts(self, degree: int, to_load: float) -> Iterable[Chart]:

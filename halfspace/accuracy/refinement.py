@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from halfspace.accuracy.stages import Charted, FoldsLost, Rung, State, on_all
@@ -17,7 +17,7 @@ from halfspace.equilibrium.charts import COMPRESSION, Stage, trace_charts
 from halfspace.equilibrium.conditions import FOLD, STEEPEST, Located
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import FOLDS, Event, Tolerance, Unconfirmed, numbered
+from halfspace.equilibrium.events import FOLDS, LEAST, Event, Tolerance, Unconfirmed, numbered
 from halfspace.equilibrium.path import Point, Segment
 from halfspace.equilibrium.search import (
     Chains,
@@ -147,19 +147,20 @@ def ascend(state: State, lowest: Rung, rtol: float, rung: Callable[[int], Rung],
     Or as long as there is memory for the next level, where that is not the first.
     """
     first, *others = levels
-    ascent = _risen(lowest, state, rung(first))
+    ascent = _risen(lowest, state, rung(first), rtol)
     for level in others:
         if not Tolerance.on(ascent.events, rtol).missed(ascent.events):
             break
         try:
-            ascent = _risen(ascent.higher, ascent.state, rung(level))
+            ascent = _risen(ascent.higher, ascent.state, rung(level), rtol)
         except GridTooLarge:
             break
     return ascent
 
 
-def _risen(below: Rung, state: State, higher: Rung) -> Ascent:
-    """Solve for the events of one rung on the next."""
+def _risen(below: Rung, state: State, higher: Rung, rtol: float) -> Ascent:
+    """Solve for the events of one rung on the next; none is told better than to a part of the accuracy asked for."""
+    higher = replace(higher, rule=replace(higher.rule, least=LEAST * rtol))
     chains = higher.chains(state)
     return Ascent(below, higher, chains, higher.estimates(chains))
 

@@ -128,7 +128,7 @@ class Following(WhereAsked):
 
 
 def standing(body: SizedBody, left: float) -> Standing:
-    """Stage on which every event has cells of its own: one operator, where a chart that follows the contact takes four.
+    """Stage on which every event has cells of its own: one operator, where a chart that follows the contact takes six.
 
     Points of the curve share operators interpolated between radii, which leave so much of loads in R dgamma and gaps in
     eps.

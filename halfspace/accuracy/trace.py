@@ -17,7 +17,7 @@ from halfspace.accuracy.stages import Discretised, Rung
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import LEAST, ErrorRule
+from halfspace.equilibrium.events import ErrorRule
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
@@ -87,7 +87,5 @@ def _rung(scales: Scales, rtol: float, how: Kernel, discretise: Discretise, leve
     if not level:
         return Rung(curve, (), settings)
     twin, before = discretise(twin_of(below), 1)[1], discretise(coarser[0], 0)[1] if coarser else None
-    rule = ErrorRule(
-        CROSSING if scales.pieced else how.left, (GRIDS.before, 1.0), steps=scales.steps, least=LEAST * rtol
-    )
+    rule = ErrorRule(CROSSING if scales.pieced else how.left, (GRIDS.before, 1.0), steps=scales.steps)
     return Rung(curve, (stage,), settings, twin, before, rule)

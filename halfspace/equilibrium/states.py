@@ -126,9 +126,8 @@ def measured(problem: Traceable, points: Sequence[Point], metric: Metric, before
 
 def _onwards(last: Point, point: Point, metric: Metric) -> Point:
     """Return the point with its arclength from the last one."""
-    return replace(
-        point, arclength=last.arclength + max(metric.step(last, point), 0.0)
-    )  # 0 where one grid hands over to the next
+    step = max(metric.step(last, point), 0.0)  # 0 where one grid hands over to the next
+    return replace(point, arclength=last.arclength + step)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
