@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -83,9 +84,9 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
         return finite_strain_scene.trace(scene, rtol, to_load)
     if scene.body.file:
         return _trace_on_given_mesh(scene, scene.body.file, rtol, to_load)
-    steps = sized_ladder if scene.sized else ladder
+    rung = sized_ladder(scene, rtol, to_load) if scene.sized else partial(ladder, scene, rtol, to_load)
     most_rungs = MOST_RUNGS if scene.sized or scene.body.cut_off is None else 1
-    return climb(rtol, partial(steps, scene, rtol, to_load), to_load=to_load, most_rungs=most_rungs)
+    return climb(rtol, rung, to_load=to_load, most_rungs=most_rungs)
 
 
 # A half-space without a length, as a block
@@ -152,33 +153,35 @@ def _to_infinity(scene: Scene, lines: Array, how: Discretisation) -> Discretised
 # Bodies with a length
 
 
-def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
-    """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level.
+def sized_ladder(scene: Scene, rtol: float, to_load: float) -> Callable[[int], Rung]:
+    """Rungs by level: the events on elements of a degree that suits the tolerance, one more on each level.
 
     What a degree more does not tell other cells do, a twin; see `fem_adhesion.bodies.body.Known`. A tension that ends
     by a step does so at one place of a cell, for both degrees: numbers erred by up to fifty times their estimate.
     """
-    degree = degree_for(rtol) + level
-    how, below, coarser, curve = (with_rings(d) for d in (degree, degree - 1, degree - 2, CURVE_DEGREE + level))
-    twin = replace(below, finest=GRIDS.twin[0] * below.finest, growth=GRIDS.twin[1] * below.growth)
+    stage = cache(partial(_standing, scene, to_load))  # that of a rung is the coarser one two rungs above
     body, step = scene.body, BY_STEP if scene.scales.step_gap else 1.0
-    return Rung(
-        sized_body(scene, curve, to_load).curve,
-        (_standing(scene, how, to_load),),
-        asdict(how) | {"curve_degree": curve.degree},
-        _standing(scene, twin, to_load) if level and (body.other_cells or scene.scales.step_gap) else None,
-        _standing(scene, coarser, to_load) if level else None,
-        ErrorRule(
-            step * REMAINING,
-            parts=(GRIDS.before, 1.0),
-            along=True,
-            steps=scene.scales.steps,
-            beyond=scene.tension_beyond,
-        ),
+    rule = ErrorRule(
+        step * REMAINING, parts=(GRIDS.before, 1.0), along=True, steps=scene.scales.steps, beyond=scene.tension_beyond
     )
 
+    def rung(level: int) -> Rung:
+        degree = degree_for(rtol) + level
+        how, below, coarser, curve = (with_rings(d) for d in (degree, degree - 1, degree - 2, CURVE_DEGREE + level))
+        twin = replace(below, finest=GRIDS.twin[0] * below.finest, growth=GRIDS.twin[1] * below.growth)
+        return Rung(
+            sized_body(scene, curve, to_load).curve,
+            (stage(how),),
+            asdict(how) | {"curve_degree": curve.degree},
+            stage(twin) if level and (body.other_cells or scene.scales.step_gap) else None,
+            stage(coarser) if level else None,
+            rule,
+        )
 
-def _standing(scene: Scene, how: Discretisation, to_load: float) -> Standing:
+    return rung
+
+
+def _standing(scene: Scene, to_load: float, how: Discretisation) -> Standing:
     return standing(sized_body(scene, how, to_load), left_between(how.degree + 2))
 
 

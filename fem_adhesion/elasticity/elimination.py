@@ -161,29 +161,56 @@ class Factors(Valued):
         return x[:-1]
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Meeting(Valued):
+    """How the cells of a mesh meet: all that their regions depend on.
+
+    Facets between two cells (2, m), the cells at the ends "axis" and "contact", the unknowns (k, cells) of the cells,
+    below 0 where they are held, and which of all (n,) are `kept`, in no region eliminated.
+    """
+
+    across: Index
+    ends: tuple[Index, Index]
+    unknowns: Index
+    kept: Mask
+
+    def regions(self) -> Region:
+        """All cells as a tree of regions."""
+        steps = np.array([_steps(self.across, end, self.unknowns.shape[1]) for end in self.ends])
+        chosen, regions = _halved(steps)
+        numbers = self.unknowns[:, chosen]
+        owners = _owners(numbers, regions, self.kept)
+        order = np.argsort(owners, kind="stable")  # in which they are eliminated
+        rank = np.append(np.argsort(order), -1)
+        made: list[Region] = []
+        for number, region in enumerate(regions):
+            parts = [] if region.stop - region.start <= LEAST else [made.pop(), made.pop()][::-1]
+            own = rank[numbers[:, region].T] if not parts else np.concatenate([rank[part.unknowns] for part in parts])
+            ranks = np.unique(own[own >= 0])
+            complete, left = (
+                order[ranks[own]] for own in (owners[order[ranks]] == number, owners[order[ranks]] > number)
+            )
+            made.append(
+                Region(tuple(parts), chosen[region], left, complete, _places(parts, rank, own, ranks, complete.size))
+            )
+        return made[0]
+
+
+LAST: list[tuple[Meeting, Region]] = []  # of what was dissected last: a quarter of the time of a chart's next operator
+
+
 def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
     """All cells of a mesh, which has the boundaries "axis" and "contact", as a tree of regions.
 
-    The unknowns (k, cells) of the cells are below 0 where they are held; kept (n,) says which of all are in no region
-    eliminated.
+    Other arguments are as of `Meeting`. The same tree as the last time where the cells meet alike.
     """
     across = np.asarray(mesh.f2t[:, mesh.f2t[1] >= 0], dtype=np.intp)
-    ends = (mesh.f2t[0, mesh.boundaries[name]] for name in ("axis", "contact"))
-    chosen, regions = _halved(np.array([_steps(across, end, mesh.nelements) for end in ends]))
-    numbers = unknowns[:, chosen]
-    owners = _owners(numbers, regions, kept)
-    order = np.argsort(owners, kind="stable")  # in which they are eliminated
-    rank = np.append(np.argsort(order), -1)
-    made: list[Region] = []
-    for number, region in enumerate(regions):
-        parts = [] if region.stop - region.start <= LEAST else [made.pop(), made.pop()][::-1]
-        own = rank[numbers[:, region].T] if not parts else np.concatenate([rank[part.unknowns] for part in parts])
-        ranks = np.unique(own[own >= 0])
-        complete, left = (order[ranks[own]] for own in (owners[order[ranks]] == number, owners[order[ranks]] > number))
-        made.append(
-            Region(tuple(parts), chosen[region], left, complete, _places(parts, rank, own, ranks, complete.size))
-        )
-    return made[0]
+    axis, contact = (mesh.f2t[0, mesh.boundaries[name]] for name in ("axis", "contact"))
+    meeting = Meeting(across, (axis, contact), unknowns, kept)
+    if not LAST or LAST[0][0] != meeting:
+        LAST.clear()  # first, since both at once would take twice the memory
+        LAST.append((meeting, meeting.regions()))
+    return LAST[0][1]
 
 
 def eliminated_by(K_cc: Array, K_ck: Array, K_kk: Array, done: Index, left: Index) -> tuple[Front, Array]:

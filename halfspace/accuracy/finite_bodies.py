@@ -46,12 +46,12 @@ class ChartSettings:
     events: float = 1.0  # cells: the radius at which an event does
     farther: float = 3.0  # times the widest contact that is planned for, as a rigid one on a blunt cone is
     nearly: float = 0.99  # of a body, which the last point of a curve may be as wide as
-    most: int = 16  # operators in a part of a chart: each state combines them all
+    most: int = 12  # operators in a part of a chart: each state combines them all
     together: int = 4  # grids integrated at once: with all of a curve's it took 0.18 GB more, and no less time
     across: float = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
-    roughly: float = 1e-3  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again
-    around: float = 1.05  # by which contact radii differ from where a chart for one event is made; with 1.005 and four
-    # operators for six rates err ten times as much, and a flat pull-off with them: 1.5 times outside on a coating
+    roughly: float = 0.1  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again
+    around: float = 1.005  # by which contact radii differ from where a chart for one event is made: by four or five
+    # operators, 1.05 took six or seven, at 1.002 what rounding leaves in their differences moved pull-off on coatings
     steps: int = 25  # per unit of the logarithm: charts end where those of like contacts do, to be the same
 
 
@@ -172,12 +172,11 @@ class SizedBody(Valued):
         return float(self.coordinate.radius(CHARTS.nearly * self.outer[:1])[0][0])
 
     def _parts(self, least: float, most: float, error: float) -> tuple[list[float], list[int]]:
-        """Ends of the parts of a range of contact radii, halved until none takes more than `most`, and operators."""
-        count, middle = self.operators_between(least, most, error), math.sqrt(least * most)
-        if count <= CHARTS.most:
-            return [least, most], [count]
-        (below, few), (above, more) = (self._parts(*half, error) for half in ((least, middle), (middle, most)))
-        return below + above[1:], few + more
+        """Ends of the parts of a range of contact radii, ascending, and how many operators serve each."""
+        ends = [least]
+        while ends[-1] < most:
+            ends.append(min(most, self._served_to(ends[-1], error)))
+        return ends, [*[CHARTS.most] * (len(ends) - 2), self.operators_between(ends[-2], ends[-1], error)]
 
     def over(self, ends: Sequence[float], counts: Sequence[int], widest: float) -> Chart:
         """Chart that follows the contact edge, in parts between contact radii (k + 1,), from so many operators (k,).
@@ -208,17 +207,29 @@ class SizedBody(Valued):
     def operators_between(self, least: float, most: float, error: float) -> int:
         """Operators between two contact radii by which a polynomial leaves an error of loads, R dgamma, or gaps, eps.
 
-        In the logarithm of the edge's coordinate the kernel is analytic up to `strip` beside the real axis and along it
-        up to the end of the cells that move. The polynomial through n errs by rho^-n, rho the sum of the half axes, in
-        windows, of the ellipse around the window that reaches so far (Bernstein), in parts of what yields `softest`
-        times as much as a half-space of E*.
+        Or of their derivatives by the logarithm of the radius, which between near radii err by more. In the logarithm
+        of the edge's coordinate the kernel is analytic up to `strip` beside the real axis and along it up to the end of
+        the cells that move. The polynomial through n errs by rho^-n, rho the sum of the half axes, in windows, of the
+        ellipse around the window that reaches so far (Bernstein), in parts of what yields `softest` times as much as a
+        half-space of E*.
         """
         low, high = (np.log(self.coordinate.of(a)) for a in (least, most))
         window = (high - low) / 2
         end = (np.log(float(self.outer[0])) - (high + low) / 2) / window
-        side, end = self.strip / window, max(end, 1.1)  # where they end within the window, more than ever pay
-        rho = min(side + np.sqrt(side**2 + 1), end + np.sqrt(end**2 - 1))
-        return max(2, int(np.ceil(np.log(CHARTS.across * self.scales.softest / error) / np.log(rho))))
+        log_rho = min(np.arcsinh(self.strip / window), np.arccosh(max(end, 1.1)))  # within it more than ever pay
+        return max(2, int(np.ceil(self._decay(error * min(window, 1.0)) / log_rho)))
+
+    def _served_to(self, least: float, error: float) -> float:
+        """Widest contact radius up to which `CHARTS.most` operators serve from another, see `operators_between`."""
+        log_rho = self._decay(error) / CHARTS.most
+        x = self.coordinate.of(least)
+        beyond = np.log(float(self.outer[0]) / x)
+        window = min(self.strip / np.sinh(log_rho), beyond / (np.cosh(log_rho) + 1))
+        return float(self.coordinate.radius(x * np.exp(2 * window))[0])
+
+    def _decay(self, error: float) -> float:
+        """Logarithm of what a polynomial through no operator would err by, in errors that it may leave."""
+        return float(np.log(CHARTS.across * self.scales.softest / error))
 
 
 def require_stored(count: int, nodes: int) -> None:

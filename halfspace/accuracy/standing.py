@@ -34,7 +34,7 @@ class WhereAsked(Stage):
     def __call__(self, event: Located) -> Chart:
         """Chart for a state: its own, on which it may have moved by more than that serves, or one that serves it."""
         own = next((chart for *_, chart in self.made if chart.problem is event.problem), None)
-        return own or self.serving(float(np.nan_to_num(undeformed_radius(event.problem, event.point))))
+        return own or self.serving(_radius(event))
 
     def serving(self, radius: float) -> Chart:
         """Chart that serves a contact radius in beta, made unless one made before will do."""
@@ -89,13 +89,17 @@ class Standing(WhereAsked):
 
         Over a grid that stands still Newton's method does not take an edge as sharp as it is between its cells far.
         Where the load hardly changes along the path, as at the pull-off of a wide contact, that edge makes it turn
-        wherever the grid was made: an event then stays there on every grid, and its changes tell nothing.
+        wherever the grid was made: an event then stays there on every grid, and its changes tell nothing. One that has
+        only moved out of the finest cells stands still again where the other grid found it.
         """
         found = moved(event, problem)
-        if found and (event.followed or _alike(found, event)):
-            return replace(found, followed=event.followed)
+        if found and event.followed:
+            return replace(found, followed=True)
+        alike = bool(found and _alike(found, event))
+        if found and alike and abs(_radius(found) - _radius(event)) <= self.body.length:
+            return found
         found = settled(event, self._following, moved)
-        return found and replace(found, followed=True)
+        return found and replace(found, followed=not alike)
 
     @property
     def _following(self) -> Stage:
@@ -105,6 +109,11 @@ class Standing(WhereAsked):
     def everywhere(self) -> Stage:
         """That for the points of a curve."""
         return self.along()
+
+
+def _radius(event: Located) -> float:
+    """Contact radius in beta on the undeformed surface, 0 without contact."""
+    return float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
 
 
 def _alike(found: Located, event: Located) -> bool:
@@ -128,7 +137,7 @@ class Following(WhereAsked):
 
 
 def standing(body: SizedBody, left: float) -> Standing:
-    """Stage on which every event has cells of its own: one operator, where a chart that follows the contact takes six.
+    """Stage on which every event has cells of its own: one operator, where a chart that follows the contact takes five.
 
     Points of the curve share operators interpolated between radii, which leave so much of loads in R dgamma and gaps in
     eps.

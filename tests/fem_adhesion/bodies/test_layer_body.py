@@ -15,7 +15,7 @@ from fem_adhesion.bodies import layers as bodies_layers
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.cli import main
 from fem_adhesion.crosscheck import scenes as comparisons
-from fem_adhesion.discretise import discretise
+from fem_adhesion.discretise import discretise, sized_body
 from fem_adhesion.materials import LinearElastic
 from fem_adhesion.paraview import picture
 from fem_adhesion.paraview.arrays import inside
@@ -23,6 +23,7 @@ from fem_adhesion.paraview.cells import Cut, Lattice
 from halfspace import Stratum, Substrate
 from halfspace.elastic import grid
 from halfspace.elastic.layered import images_of, layered_panels
+from halfspace.elastic.operators import kernels_of
 from halfspace.errors import ContactTooWide, InputError, NotConverged
 from halfspace.laws import Dlvo, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
@@ -83,6 +84,18 @@ def test_a_state_between_events_is_held_by_its_estimate():
     for quantity in ("approach", "central_gap", "contact_radius"):
         bar = getattr(found, f"{quantity}_error") + getattr(true, f"{quantity}_error")
         assert abs(getattr(found, quantity) - getattr(true, quantity)) < bar, quantity
+
+
+@pytest.mark.parametrize(("poisson", "scatter"), [(0.3, 3e-9), (0.4999, 3e-7)])
+def test_compliances_under_a_wide_contact_are_smooth_in_its_radius(poisson, scatter):
+    """On cells as thin as at its edge but long, elimination left 100 times as much, and rates between them 1e-4."""
+    coating = Coated(0.914, 4.64, poisson, poisson=poisson)
+    body = sized_body(Scene(12.2, coating, Hyperboloid(0.556)), Discretisation(4))
+    cells = body.around(150.0, 1e-7)[2].problem.interface.operator.grid
+    found = [body.make(cells.lines(150.0 * np.exp(0.001 * n)))[0] for n in range(6)]
+    under = found[0].radii < 150.0
+    kernels = np.array([kernel[under][:, under] for kernel in kernels_of(found)])
+    assert np.abs(np.diff(kernels, 5, axis=0)).max() < scatter * np.abs(kernels).max()
 
 
 @pytest.mark.parametrize("body", [HalfSpace(), Layer(2.0, poisson=0.3)], ids=str)

@@ -20,6 +20,7 @@ from halfspace.accuracy.layered import layered_body
 from halfspace.accuracy.standing import standing
 from halfspace.elastic.layered import images_of
 from halfspace.equilibrium.charts import moved
+from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.states import met_again
 from halfspace.errors import InputError, Unsolved
 from halfspace.profiles import PARABOLOID, Paraboloid, Sphere
@@ -133,7 +134,7 @@ def test_operators_on_a_stiff_coating_are_known_between_their_radii():
     """By fewer than its yield asks for they were a hundred times worse: a curve rippled, its points had no errors."""
     scales = Scales(4.0, profile=Sphere(20.0, 1.0).surface(4.0), body=Coated(0.5, 100.0))
     body = layered_body(scales, images_of(scales.body), resolution_for(scales, 1e-3))
-    operator = body.curve()[1].problem.operator
+    operator = body.curve(1e-3)[1].problem.operator
     known = operator.kernel.parts[0].lengths
     for a in np.sqrt(known[1:] * known[:-1])[::3]:
         exact, pressure = body.make(operator.grid.lines(a))[0], np.exp(-((operator.at(a).radii / a) ** 2))
@@ -173,3 +174,16 @@ def test_an_event_that_its_own_grid_does_not_give_is_found_near_there_by_few_ope
     np.testing.assert_allclose(found.point.observables, expected, atol=2e-5)  # the cells are others, of degree 5
     assert found.problem.interface.follows_contact
     assert len(made) < 10
+
+
+def test_an_event_that_leaves_the_finest_cells_of_its_grid_is_found_where_it_is():
+    """From a radius 30 cells off it stayed between longer ones, on one grid after another: 2e-3 off."""
+    scene = Scene(12.0, profile=Sphere(300.0))
+    body = sized_body(scene, Discretisation(4))
+    event = halfspace.trace(**scene.for_half_space, rtol=1e-3).stages[-1]["zero_load"]
+    expected = met_again(standing(body, 1e-8), event).point.observables
+    for part in (0.97, 1.03):
+        apart = moved(event, body.standing(part * event.point.observables[CONTACT_RADIUS]).problem)
+        found = met_again(standing(body, 1e-8), apart)
+        assert not found.followed
+        np.testing.assert_allclose(found.point.observables, expected, atol=1e-7)
