@@ -50,6 +50,11 @@ class Region(Valued):
     complete: Index
     places: tuple[Places, ...]
 
+    @cached_property
+    def nbytes(self) -> int:
+        """Memory of its places and those of its parts."""
+        return sum(places.nbytes for places in self.places) + sum(part.nbytes for part in self.parts)
+
     def stiffness(self, K: Array) -> Array:
         """Stiffness (k, k) of the unknowns that are left, from that of all cells, positive definite."""
         return self._reduced(K, lambda _, done, beside, left: eliminate(done, beside, left))
@@ -196,21 +201,25 @@ class Meeting(Valued):
         return made[0]
 
 
-LAST: list[tuple[Meeting, Region]] = []  # of what was dissected last: a quarter of the time of a chart's next operator
+RECENT: list[tuple[Meeting, Region]] = []  # what was dissected last: a quarter of the time of a chart's next operator
+ROOM = 5e7  # bytes beside which another is kept: those of both spheres of a pair take turns
 
 
 def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
     """All cells of a mesh, which has the boundaries "axis" and "contact", as a tree of regions.
 
-    Other arguments are as of `Meeting`. The same tree as the last time where the cells meet alike.
+    Other arguments are as of `Meeting`. The same tree as before where the cells meet alike.
     """
     across = np.asarray(mesh.f2t[:, mesh.f2t[1] >= 0], dtype=np.intp)
     axis, contact = (mesh.f2t[0, mesh.boundaries[name]] for name in ("axis", "contact"))
     meeting = Meeting(across, (axis, contact), unknowns, kept)
-    if not LAST or LAST[0][0] != meeting:
-        LAST.clear()  # first, since both at once would take twice the memory
-        LAST.append((meeting, meeting.regions()))
-    return LAST[0][1]
+    known = next((region for other, region in RECENT if other == meeting), None)
+    if known is None:
+        while sum(region.nbytes for _, region in RECENT) > ROOM:  # first, since both at once take twice the memory
+            del RECENT[0]
+        known = meeting.regions()
+        RECENT.append((meeting, known))
+    return known
 
 
 def eliminated_by(K_cc: Array, K_ck: Array, K_kk: Array, done: Index, left: Index) -> tuple[Front, Array]:

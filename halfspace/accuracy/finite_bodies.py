@@ -46,7 +46,7 @@ class ChartSettings:
     events: float = 1.0  # cells: the radius at which an event does
     farther: float = 3.0  # times the widest contact that is planned for, as a rigid one on a blunt cone is
     nearly: float = 0.99  # of a body, which the last point of a curve may be as wide as
-    most: int = 12  # operators in a part of a chart: each state combines them all
+    most: int = 16  # operators in a part of a chart: each state combines them all
     together: int = 4  # grids integrated at once: with all of a curve's it took 0.18 GB more, and no less time
     across: float = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
     roughly: float = 0.1  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again

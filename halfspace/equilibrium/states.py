@@ -324,7 +324,7 @@ def finest_curve(segments: Sequence[Segment], ladder: Ladder, metric: Metric, fo
         return FinestCurve(traced, traced, ladder, metric, folds)
     found, left_behind = list[tuple[Traceable, Point]](), dict[int, Traceable]()
     for problem, point in ((segment.problem, point) for segment in segments for point in segment.points):
-        there = placed(ladder.along.finest, Located(PLANE, problem, point, 1.0))
+        there = placed(ladder.finest.everywhere, Located(PLANE, problem, point, 1.0))
         found.append((there.problem, there.point) if there else (problem, point))
         if not there:
             left_behind[id(problem)] = problem
