@@ -20,6 +20,7 @@ from fem_adhesion.discretise import (
     size_for,
     sized_body,
 )
+from fem_adhesion.elasticity.elimination import RECENT
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy.grids import GRIDS, rings
@@ -86,7 +87,10 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
         return _trace_on_given_mesh(scene, scene.body.file, rtol, to_load)
     rung = sized_ladder(scene, rtol, to_load) if scene.sized else partial(ladder, scene, rtol, to_load)
     most_rungs = MOST_RUNGS if scene.sized or scene.body.cut_off is None else 1
-    return climb(rtol, rung, to_load=to_load, most_rungs=most_rungs)
+    try:
+        return climb(rtol, rung, to_load=to_load, most_rungs=most_rungs)
+    finally:
+        RECENT.clear()  # up to 0.3 GB
 
 
 # A half-space without a length, as a block

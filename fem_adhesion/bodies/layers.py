@@ -33,8 +33,9 @@ DIED_OUT = 20.0
 SLENDER = 1e5
 # Part of the length of a column of cells by which those in it are deeper than at the contact edge, until all in a
 # stratum are alike. As thin as there but long, under the contact and far out, they make the stiffness ill-conditioned:
-# compliances of a coating of poisson 0.4999 scattered by 1e-4 from one contact radius to the next, with this by 3e-6,
-# others by 1e-6 and 3e-9, of a contact 50 to 100 times less. At 0.1 estimates on thick coatings are 1.5 times as wide.
+# from one contact radius to the next compliances of a coating of poisson 0.4999 scattered by 1e-4, of others by 1e-6,
+# with this by 5e-6 and 3e-9; under the contact by 2e-6 and 1e-8, with this by 3e-8 and 5e-10. At 0.1 estimates on thick
+# coatings are 1.5 times as wide.
 DEEPER = 0.03
 
 

@@ -57,7 +57,7 @@ class Dissection(Valued):
         return Factors([interiors, *fronts, last], self.surface, stiffness)
 
     def forget(self) -> None:
-        """Free the memory of the regions, which are made anew when asked for."""
+        """Let go of the regions, which are dissected anew when asked for."""
         self.__dict__.pop("_regions", None)
 
     @cached_property

@@ -201,8 +201,8 @@ class Meeting(Valued):
         return made[0]
 
 
-RECENT: list[tuple[Meeting, Region]] = []  # what was dissected last: a quarter of the time of a chart's next operator
-ROOM = 5e7  # bytes beside which another is kept: those of both spheres of a pair take turns
+RECENT: list[tuple[Meeting, Region]] = []  # dissected last: the next operator saves a quarter of its time
+ROOM = 5e7  # bytes of these beside which another is kept, however large: those of both spheres of a pair take turns
 
 
 def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
@@ -213,10 +213,12 @@ def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
     across = np.asarray(mesh.f2t[:, mesh.f2t[1] >= 0], dtype=np.intp)
     axis, contact = (mesh.f2t[0, mesh.boundaries[name]] for name in ("axis", "contact"))
     meeting = Meeting(across, (axis, contact), unknowns, kept)
-    known = next((region for other, region in RECENT if other == meeting), None)
+    recent = list(RECENT)  # another thread may change it
+    known = next((region for other, region in recent if other == meeting), None)
     if known is None:
-        while sum(region.nbytes for _, region in RECENT) > ROOM:  # first, since both at once take twice the memory
-            del RECENT[0]
+        while sum(region.nbytes for _, region in recent) > ROOM:
+            del recent[0]
+        RECENT[:] = recent  # before the next is made, since both at once take twice the memory
         known = meeting.regions()
         RECENT.append((meeting, known))
     return known

@@ -179,12 +179,7 @@ class Curve(WithEvents, States):
         }
 
 
-def trace(
-    scene: Scene,
-    rtol: float = 1e-3,
-    *,
-    to_load: float = 5.0,
-) -> Curve:
+def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0) -> Curve:
     """Trace the load-approach curve by Newton's method for all displacements at once.
 
     The body is meshed by quadrilaterals and clamped far away; scikit-fem assembles the weak form of

@@ -157,12 +157,13 @@ class SizedBody(Valued):
     def around(self, radius: float, error: float) -> tuple[float, float, Chart]:
         """Chart for a contact radius in beta, erring as that of a curve, and the radii from and to which it serves.
 
-        It is the one fine on the axis for contacts that this serves, else one that follows them near the radius.
+        So do its derivatives by the logarithm of the radius, which between radii so near err by more. It is the one
+        fine on the axis for contacts that this serves, else one that follows them near the radius.
         """
         if radius <= self.leave:
             return 0.0, self.leave, self.centred()
         least, most = radius / CHARTS.around, min(CHARTS.around * radius, self._widest)
-        count = self.operators_between(least, most, error)
+        count = self.operators_between(least, most, error * math.log(CHARTS.around))
         # Inside the edge cells are as long as outside where the contact is half as wide as is planned for.
         return least, most, self.over([least, most], [count], widest=2 * most)
 
@@ -207,17 +208,17 @@ class SizedBody(Valued):
     def operators_between(self, least: float, most: float, error: float) -> int:
         """Operators between two contact radii by which a polynomial leaves an error of loads, R dgamma, or gaps, eps.
 
-        Or of their derivatives by the logarithm of the radius, which between near radii err by more. In the logarithm
-        of the edge's coordinate the kernel is analytic up to `strip` beside the real axis and along it up to the end of
-        the cells that move. The polynomial through n errs by rho^-n, rho the sum of the half axes, in windows, of the
-        ellipse around the window that reaches so far (Bernstein), in parts of what yields `softest` times as much as a
-        half-space of E*.
+        In the logarithm of the edge's coordinate the kernel is analytic up to `strip` beside the real axis and along it
+        up to the end of the cells that move. The polynomial through n errs by rho^-n, rho the sum of the half axes, in
+        windows, of the ellipse around the window that reaches so far (Bernstein), in parts of what yields `softest`
+        times as much as a half-space of E*.
         """
         low, high = (np.log(self.coordinate.of(a)) for a in (least, most))
         window = (high - low) / 2
         end = (np.log(float(self.outer[0])) - (high + low) / 2) / window
-        log_rho = min(np.arcsinh(self.strip / window), np.arccosh(max(end, 1.1)))  # within it more than ever pay
-        return max(2, int(np.ceil(self._decay(error * min(window, 1.0)) / log_rho)))
+        # Where the cells end within the window, more than ever pay.
+        log_rho = min(np.arcsinh(self.strip / window), np.arccosh(max(end, 1.1)))
+        return max(2, int(np.ceil(self._decay(error) / log_rho)))
 
     def _served_to(self, least: float, error: float) -> float:
         """Widest contact radius up to which `CHARTS.most` operators serve from another, see `operators_between`."""

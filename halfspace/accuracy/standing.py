@@ -98,7 +98,7 @@ class Standing(WhereAsked):
         alike = bool(found and _alike(found, event))
         if found and alike and abs(_radius(found) - _radius(event)) <= self.body.length:
             return found
-        found = settled(event, self._following, moved)
+        found = settled(found if found and alike else event, self._following, moved)
         return found and replace(found, followed=not alike)
 
     @property

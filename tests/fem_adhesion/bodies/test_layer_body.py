@@ -86,9 +86,9 @@ def test_a_state_between_events_is_held_by_its_estimate():
         assert abs(getattr(found, quantity) - getattr(true, quantity)) < bar, quantity
 
 
-@pytest.mark.parametrize(("poisson", "scatter"), [(0.3, 3e-9), (0.4999, 3e-7)])
+@pytest.mark.parametrize(("poisson", "scatter"), [(0.3, 5e-9), (0.4999, 1e-6)])
 def test_compliances_under_a_wide_contact_are_smooth_in_its_radius(poisson, scatter):
-    """On cells as thin as at its edge but long, elimination left 100 times as much, and rates between them 1e-4."""
+    """On cells as thin as at its edge but long, elimination left 30 times as much, and more in their differences."""
     coating = Coated(0.914, 4.64, poisson, poisson=poisson)
     body = sized_body(Scene(12.2, coating, Hyperboloid(0.556)), Discretisation(4))
     cells = body.around(150.0, 1e-7)[2].problem.interface.operator.grid

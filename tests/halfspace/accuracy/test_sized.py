@@ -177,13 +177,13 @@ def test_an_event_that_its_own_grid_does_not_give_is_found_near_there_by_few_ope
 
 
 def test_an_event_that_leaves_the_finest_cells_of_its_grid_is_found_where_it_is():
-    """From a radius 30 cells off it stayed between longer ones, on one grid after another: 2e-3 off."""
+    """From radii 3 to 50 % off it stayed between longer ones, on one grid after another: by up to 1.8 eps."""
     scene = Scene(12.0, profile=Sphere(300.0))
     body = sized_body(scene, Discretisation(4))
     event = halfspace.trace(**scene.for_half_space, rtol=1e-3).stages[-1]["zero_load"]
     expected = met_again(standing(body, 1e-8), event).point.observables
-    for part in (0.97, 1.03):
+    for part in (0.5, 0.6, 0.97, 1.03):
         apart = moved(event, body.standing(part * event.point.observables[CONTACT_RADIUS]).problem)
         found = met_again(standing(body, 1e-8), apart)
         assert not found.followed
-        np.testing.assert_allclose(found.point.observables, expected, atol=1e-7)
+        np.testing.assert_allclose(found.point.observables, expected, rtol=0, atol=2e-6)
