@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +38,9 @@ def part_in(
     """
     name, _, rest = word.partition(":")
     if name not in PARTS[kind]:
-        raise InputError(f"{kind} = {name}, limit: one of {', '.join(PARTS[kind])}; write {usage(kind, 'NAME')}")
+        near = get_close_matches(name, PARTS[kind], n=1)
+        remedy = f"did you mean {usage(kind, near[0])}?" if near else "take one of these"
+        raise InputError(f"{kind} = {name}, limit: one of {', '.join(PARTS[kind])}; {remedy}")
     part, known = PARTS[kind][name], known or {}
     own = {parameter: unit for parameter, unit in part.parameters.items() if parameter not in known}
     values = _strata(rest, length, given) if name == "layers" else _values(kind, word, own, length)
@@ -53,7 +56,7 @@ def usage(kind: str, name: str, own: Mapping[str, str] | None = None) -> str:
     """How the word of a part is written."""
     if name == "layers":
         return "layers:thickness,poisson,modulus/.../BASE, BASE being bonded|sliding|substrate:modulus,poisson"
-    taken = PARTS[kind][name].parameters if own is None and name in PARTS[kind] else own or {}
+    taken = PARTS[kind][name].parameters if own is None else own
     words = [unit.replace(" or ", "|") if " or " in unit else each for each, unit in taken.items()]
     return f"{name}:{','.join(words)}".rstrip(":")
 

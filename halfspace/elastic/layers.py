@@ -48,8 +48,8 @@ class Substrate:
         Poisson's ratio, 0 to 0.499999.
     """
 
-    modulus: float = 1.0
-    poisson: float = 0.3
+    modulus: float
+    poisson: float
 
     def __post_init__(self) -> None:
         keep(self, modulus=require_stiffness(self.modulus), poisson=require_poisson(self.poisson))

@@ -262,7 +262,9 @@ def test_compare_rejects_another_body(asked, wrong):
         ),
         ("layers:1,0.3,1,2", "strata = stratum:1,0.3,1,2, limit: stratum:thickness,poisson,modulus; leave out 2"),
         ("layers:1,0.4 --poisson 0.3", "poisson = 0.3 with strata, limit: that of the"),
-        ("layers:1/glued", "base = glued, limit: one of substrate"),
+        ("layers:1/glued", "base = glued, limit: one of substrate; take one of these"),
+        ("layers:1/substrate", "base = substrate, limit: substrate:modulus,poisson; give modulus, E of the first"),
+        ("layered:2", "meshed; did you mean layer:thickness,bonded|sliding?"),
     ],
     ids=str,
 )
