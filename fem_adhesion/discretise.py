@@ -45,7 +45,7 @@ FAR_FIELDS: Mapping[FarFieldName, FarField] = {
 
 TRIANGLE = ElementTriP2()
 LENGTHS = 50  # lengths of the cells at the contact edge to a factor of e, so that charts of like contacts share
-CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to 0.1 or better: see `ChartSettings`
+CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to 0.01 or better: see `ChartSettings`
 
 
 @cache

@@ -49,7 +49,7 @@ class ChartSettings:
     most: int = 16  # operators in a part of a chart: each state combines them all
     together: int = 4  # grids integrated at once: with all of a curve's it took 0.18 GB more, and no less time
     across: float = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
-    roughly: float = 0.1  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again
+    roughly: float = 0.01  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again
     around: float = 1.005  # by which contact radii differ from where a chart for one event is made: by four or five
     # operators, 1.05 took six or seven, at 1.002 what rounding leaves in their differences moved pull-off on coatings
     steps: int = 25  # per unit of the logarithm: charts end where those of like contacts do, to be the same

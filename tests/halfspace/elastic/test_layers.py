@@ -104,7 +104,7 @@ def test_a_bell_deflects_a_layer_as_hankels_integral(thickness):
         (lambda: Coated(1.0, 0.0), "modulus_ratio = 0 is outside 0.001 <= modulus_ratio <= 100"),
         (lambda: Layers([]), "limit: one stratum or more"),
         (lambda: Layers([Stratum(1.0, 0.3, 2.0)]), "modulus = 2 of the first stratum"),
-        (lambda: Substrate(1e4), "modulus = 10000, in units of the first stratum's, is outside"),
+        (lambda: Substrate(1e4, 0.3), "modulus = 10000, in units of the first stratum's, is outside"),
     ],
 )
 def test_what_is_no_layer_is_refused_when_it_is_made(make, words):
