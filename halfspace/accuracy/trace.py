@@ -85,7 +85,7 @@ def _rung(scales: Scales, rtol: float, how: Kernel, discretise: Discretise, leve
     resolution, below, *coarser = how.resolutions(scales, rtol, level)
     (curve, stage), settings = discretise(resolution, 0), {"kernel": how.name, **asdict(resolution)}
     if not level:
-        return Rung(curve, (), settings)
+        return Rung(curve, (stage,), settings)
     twin, before = discretise(twin_of(below), 1)[1], discretise(coarser[0], 0)[1] if coarser else None
     rule = ErrorRule(CROSSING if scales.pieced else how.left, (GRIDS.before, 1.0), steps=scales.steps)
     return Rung(curve, (stage,), settings, twin, before, rule)
