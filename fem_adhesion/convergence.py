@@ -20,7 +20,7 @@ from fem_adhesion.discretise import (
     size_for,
     sized_body,
 )
-from fem_adhesion.elasticity.elimination import RECENT
+from fem_adhesion.elasticity.elimination import DISSECTED
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy.grids import GRIDS, rings
@@ -78,7 +78,14 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
         If the curve cannot be traced; as ContactTooWide if the contact grows wider than its body.
     """
     require_scene(scene)
-    rtol, to_load = require_rtol(rtol), require_load(to_load)
+    try:
+        return _traced(scene, require_rtol(rtol), require_load(to_load))
+    finally:
+        DISSECTED.clear()  # up to 0.3 GB
+
+
+def _traced(scene: Scene, rtol: float, to_load: float) -> EquilibriumPath:
+    """Trace by the ladder that suits the body."""
     if scene.material.finite:
         from fem_adhesion.finite_strain import scene as finite_strain_scene  # it takes time to load, and few need it
 
@@ -87,10 +94,7 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
         return _trace_on_given_mesh(scene, scene.body.file, rtol, to_load)
     rung = sized_ladder(scene, rtol, to_load) if scene.sized else partial(ladder, scene, rtol, to_load)
     most_rungs = MOST_RUNGS if scene.sized or scene.body.cut_off is None else 1
-    try:
-        return climb(rtol, rung, to_load=to_load, most_rungs=most_rungs)
-    finally:
-        RECENT.clear()  # up to 0.3 GB
+    return climb(rtol, rung, to_load=to_load, most_rungs=most_rungs)
 
 
 # A half-space without a length, as a block

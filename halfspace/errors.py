@@ -6,7 +6,7 @@ Every other exception is a defect of the program, and shows its traceback.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar, final
 
@@ -49,6 +49,13 @@ class GridTooCoarse(NotConverged):
     def __str__(self) -> str:
         """Return the message alone."""
         return str(self.args[0])
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """Which known word is near to one that is not, to be named in the remedy, if there is one."""
+    from difflib import get_close_matches  # here, as it takes a third of what the program's help does
+
+    return next(iter(get_close_matches(word, list(known), n=1)), None)
 
 
 @final

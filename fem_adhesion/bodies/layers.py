@@ -137,9 +137,8 @@ def _deepened(mesh: Any, r: Array, slabs: Sequence[Array], finest: float) -> Any
     """Mesh of slabs between lines of constant radius, with the long cells in them nearer to equal depths: `DEEPER`."""
     even = [np.linspace(slab[0], slab[-1], slab.size) for slab in slabs]
     z, towards, mean = _joined(slabs), _joined(even), _joined([np.gradient(lines) for lines in even])
-    length = np.convolve(np.pad(np.diff(r), 1, "edge"), [0.5, 0.5], "valid")
     column, row = np.searchsorted(r, mesh.p[0]), np.searchsorted(z, -mesh.p[1])
-    deeper = DEEPER * (length - finest)[column]
+    deeper = DEEPER * (np.gradient(r) - finest)[column]
     depth = z[row] + deeper / (deeper + mean[row]) * (towards - z)[row]
     return replace(mesh, doflocs=np.array([mesh.p[0], -depth]))
 

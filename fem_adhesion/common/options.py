@@ -16,7 +16,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from fem_adhesion.common.files import STANDARD, all_written_aside
-from halfspace.errors import InputError
+from halfspace.errors import InputError, nearest
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -93,23 +93,21 @@ class Parser(argparse.ArgumentParser):
         """Refuse what it does not know where it is met: a command knows its own options, the program does not."""
         found, unknown = super().parse_known_args(args, namespace)
         if unknown:
-            near = _nearest(unknown[0].partition("=")[0], self._option_string_actions)
+            near = _question(unknown[0].partition("=")[0], self._option_string_actions)
             self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
         return found, []
 
     def error(self, message: str) -> NoReturn:
         """Exit with code 2."""
         choice = re.search(r"invalid choice: '(.*)' \(choose from (.*)\)", message)
-        near = _nearest(choice[1], re.findall(r"[\w-]+", choice[2])) if choice else ""
+        near = _question(choice[1], re.findall(r"[\w-]+", choice[2])) if choice else ""
         self.exit(BAD_INPUT, f"{self.prog}: {message}{near}; see {self.prog} --help\n")
 
 
-def _nearest(word: str, known: Iterable[str]) -> str:
+def _question(word: str, known: Iterable[str]) -> str:
     """Question after the nearest of the words that are known, if one is near."""
-    from difflib import get_close_matches  # here, as it takes a third of what the program's help does
-
-    near = get_close_matches(word, known, n=1)
-    return f" (did you mean {near[0]}?)" if near else ""
+    near = nearest(word, known)
+    return f" (did you mean {near}?)" if near else ""
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from fem_adhesion.registry import PARTS
-from halfspace.errors import InputError
+from halfspace.errors import InputError, nearest
 
 Length = Callable[[str, str], float]
 """Takes the name of a length and its text, and gives it in beta; a length of a law in eps."""
@@ -38,8 +37,8 @@ def part_in(
     """
     name, _, rest = word.partition(":")
     if name not in PARTS[kind]:
-        near = get_close_matches(name, PARTS[kind], n=1)
-        remedy = f"did you mean {usage(kind, near[0])}?" if near else "take one of these"
+        near = nearest(name, PARTS[kind])
+        remedy = f"did you mean {usage(kind, near)}?" if near else "take one of these"
         raise InputError(f"{kind} = {name}, limit: one of {', '.join(PARTS[kind])}; {remedy}")
     part, known = PARTS[kind][name], known or {}
     own = {parameter: unit for parameter, unit in part.parameters.items() if parameter not in known}

@@ -201,8 +201,8 @@ class Meeting(Valued):
         return made[0]
 
 
-RECENT: list[tuple[Meeting, Region]] = []  # dissected last: the next operator saves a quarter of its time
-ROOM = 5e7  # bytes of these beside which another is kept, however large: those of both spheres of a pair take turns
+DISSECTED: list[tuple[Meeting, Region]] = []  # last: the next operator saves a quarter of its time
+DISSECTED_ROOM = 5e7  # bytes of these beside which another, however large, is kept: the spheres of a pair take turns
 
 
 def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
@@ -213,14 +213,14 @@ def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
     across = np.asarray(mesh.f2t[:, mesh.f2t[1] >= 0], dtype=np.intp)
     axis, contact = (mesh.f2t[0, mesh.boundaries[name]] for name in ("axis", "contact"))
     meeting = Meeting(across, (axis, contact), unknowns, kept)
-    recent = list(RECENT)  # another thread may change it
+    recent = list(DISSECTED)  # another thread may change it
     known = next((region for other, region in recent if other == meeting), None)
     if known is None:
-        while sum(region.nbytes for _, region in recent) > ROOM:
+        while sum(region.nbytes for _, region in recent) > DISSECTED_ROOM:
             del recent[0]
-        RECENT[:] = recent  # before the next is made, since both at once take twice the memory
+        DISSECTED[:] = recent  # before the next is made, since both at once take twice the memory
         known = meeting.regions()
-        RECENT.append((meeting, known))
+        DISSECTED.append((meeting, known))
     return known
 
 

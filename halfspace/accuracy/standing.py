@@ -95,10 +95,10 @@ class Standing(WhereAsked):
         found = moved(event, problem)
         if found and event.followed:
             return replace(found, followed=True)
-        alike = bool(found and _alike(found, event))
-        if found and alike and abs(_radius(found) - _radius(event)) <= self.body.length:
-            return found
-        found = settled(found if found and alike else event, self._following, moved)
+        alike = found if found and _alike(found, event) else None
+        if alike and abs(_radius(alike) - _radius(event)) <= self.body.length:
+            return alike
+        found = settled(alike or event, self._following, moved)
         return found and replace(found, followed=not alike)
 
     @property

@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -14,7 +13,7 @@ import numpy as np
 from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.conditions import ROUND_OFF, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, OBSERVABLES
-from halfspace.errors import InputError
+from halfspace.errors import InputError, nearest
 from halfspace.values import Array, Estimate
 
 T = TypeVar("T")
@@ -174,10 +173,8 @@ class WithEvents:
     def event(self, name: str) -> Event | None:
         """Event by name, or None if the curve does not have it; InputError if no curve has an event of that name."""
         if not is_event(name):
-            near = get_close_matches(name, EVENTS, n=1)
-            remedy = (
-                f'did you mean "{near[0]}"?' if near else "take one of these, or fold_2, fold_3 ... between the jumps"
-            )
+            near = nearest(name, EVENTS)
+            remedy = f'did you mean "{near}"?' if near else "take one of these, or fold_2, fold_3 ... between the jumps"
             raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
         return self.events.get(name)
 
