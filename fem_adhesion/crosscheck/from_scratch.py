@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any, TypeVar
 
@@ -22,7 +23,7 @@ import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, of_values
 from fem_adhesion.crosscheck.definitions import numbers
 from fem_adhesion.crosscheck.settings import USUAL
-from fem_adhesion.crosscheck.weak_bodies import FineAt, contacts, sharpness
+from fem_adhesion.crosscheck.weak_bodies import FineAt, contacts, displaced, sharpness
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Contact
@@ -118,7 +119,7 @@ def _apart(contact: Contact, radius: float) -> list[float]:
         return body.integral(field * weight) / radius**2
 
     def rise(tension: Array) -> float:
-        return mu * mean(body.rise(body.displaced(tension)))
+        return mu * mean(body.rise(displaced(body, tension)))
 
     load, slope = (-body.integral(values) for values in tensions)
     raised, further = map(rise, tensions)
@@ -228,8 +229,8 @@ def _stable_side(state: Equilibrium) -> float:
     else is no jump.
     """
     for step in np.array(USUAL.aside) * (1 + abs(state.load)):
-        below = _found(state.at_load, state.load - step)
-        above = below and _found(state.at_load, state.load + step)
+        below = _found(state.nearby, at_load(state.contact, state.load - step))
+        above = below and _found(state.nearby, at_load(state.contact, state.load + step))
         if below and above:
             ways = below.unstable, above.unstable
             return float(ways[0] - ways[1]) if min(ways) == 0 else math.nan
@@ -246,7 +247,7 @@ def _from_afar(far: float, fold: StateInWeakForm) -> Equilibrium | None:
     first, *others = approach - np.geomspace(approach - far, near, USUAL.steps)
     state = newton(contact, contact.undeformed(first), at_approach(first))
     for place in others:
-        state = state.at_approach(place)
+        state = state.nearby(at_approach(place))
     if abs(state.load - fold.load) >= USUAL.away * (1 + abs(fold.load)):
         return None
     return newton(contact, state.y, at_load(contact, fold.load))
@@ -288,7 +289,7 @@ def _state(contact: Contact, event: Located) -> StateInWeakForm:
     approach, load = (float(value) for value in event.point.observables[:2])
     body, h = contact.body, 1 + _gaps(event, contact)
     tension = contact.law.tension(h)
-    off = contact.left_by(body.displaced(contact.tabor * tension), approach) - h
+    off = contact.left_by(displaced(body, contact.tabor * tension), approach) - h
     balance = body.integral(off * np.abs(tension)) / body.integral(np.abs(tension))
     return StateInWeakForm(contact, np.append(h, approach), load, balance)
 
@@ -315,17 +316,18 @@ def _turn(name: str, state: Equilibrium | None) -> Equilibrium | None:
     """
     if state is None:
         return None
-    along, place = (state.at_approach, state.approach) if name == "pull_off" else (state.at_load, state.load)
+    at = at_approach if name == "pull_off" else partial(at_load, state.contact)
+    place = state.approach if name == "pull_off" else state.load
     step = USUAL.turn * (1 + abs(place))
 
     def slope(there: float) -> float:
-        stiffness = along(there).stiffness
+        stiffness = state.nearby(at(there)).stiffness
         return stiffness if name == "pull_off" else 1 / stiffness
 
     def turned() -> Equilibrium | None:
         how: dict[str, Any] = {"tol": USUAL.turned * step, "maxiter": USUAL.tries, "full_output": True, "disp": False}
         root, found = secant(slope, place, x1=place + step, **how)
-        return along(float(root)) if found.converged else None
+        return state.nearby(at(float(root))) if found.converged else None
 
     return _found(turned)
 
@@ -345,6 +347,11 @@ def _ripple(state: Equilibrium | None) -> float:
     return min(float(np.max(np.abs(f - np.polynomial.Polynomial.fit(x, f, 2)(x)))) for f in fields)
 
 
+def _energy(state: Equilibrium) -> float:
+    """Potential energy in R dgamma eps, see `Contact.energy`."""
+    return state.contact.energy(state.u, state.approach)
+
+
 def _energy_released(scene: Scene, on: FineAt, path: EquilibriumPath) -> float | None:
     """Potential energy from undeformed surfaces that deform far apart to the equilibrium in contact at no approach."""
     apart, touching = (path.stages[-1][name] for name in ("separated", "zero_approach"))
@@ -352,4 +359,4 @@ def _energy_released(scene: Scene, on: FineAt, path: EquilibriumPath) -> float |
     far = scene.scales.separated_approach
     before = _found(newton, first, first.undeformed(far), at_approach(far))
     after = _found(newton, second, np.append(1 + _gaps(touching, second), 0.0), at_approach(0.0))
-    return before.energy - after.energy if before and after else None
+    return _energy(before) - _energy(after) if before and after else None

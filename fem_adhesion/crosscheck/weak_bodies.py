@@ -85,7 +85,7 @@ def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float, rea
     tip = float(2.0 ** np.floor(np.log2(first))) if np.isfinite(first) else np.inf
     reach = float(2.0 ** np.ceil(np.log2(reach / radius)))
     body = half_space(_finest(scene, radius), size, int(degree), scene.poisson, tip, reach)
-    return Contact(body.scaled(radius), scene.tabor, heights(scene), law_of(scene))
+    return Contact(scaled(body, radius), scene.tabor, heights(scene), law_of(scene))
 
 
 def _finest(scene: Scene, radius: float) -> float:
@@ -113,6 +113,16 @@ def half_space(
     return _with_rigid(_on_ground(body, pressure, 2 * np.pi / 3, 4 * np.pi**2 / 15))
 
 
+def scaled(body: Body, a: float) -> Body:
+    """The same body a times as large: its stiffness grows as its size."""
+    return Body(body.stiffness * a, body.values, body.radii * a, body.area * a**2, body.depths * a, body.rim * a)
+
+
+def displaced(body: Body, tension: Array) -> Array:
+    """Unknowns (n,) under a tension at the points: a(u, v) = int tension v_z dA for all v."""
+    return np.asarray(body.factors(0 * tension).solve(body.forces(tension)))
+
+
 def _fine_within(reach: float, lines: Array) -> Array:
     """Ends of cells, cut into equal parts where they are longer than a part of a distance within it."""
     counts = np.where(lines[:-1] < reach, np.ceil(np.diff(lines) / (USUAL.within * reach)), 1).astype(int)
@@ -122,7 +132,7 @@ def _fine_within(reach: float, lines: Array) -> Array:
 
 def _on_ground(body: Body, pressure: Array, load: float, work: float) -> Body:
     """A body on a plate, on a spring with which a pressure of this load does the work that it does on a half-space."""
-    missed = 1 + (work - body.integral(pressure * body.rise(body.displaced(pressure)))) / load**2
+    missed = 1 + (work - body.integral(pressure * body.rise(displaced(body, pressure)))) / load**2
     stiffness = body.stiffness.copy()
     stiffness[-1, -1] += 1 / missed - 1
     return replace(body, stiffness=stiffness)

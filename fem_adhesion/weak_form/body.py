@@ -89,18 +89,10 @@ class Body(Valued):
         symmetric: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
         return splu(sparse.csc_array(matrix), permc_spec="MMD_AT_PLUS_A", **symmetric)
 
-    def displaced(self, tension: Array) -> Array:
-        """Unknowns (n,) under a tension at the points: a(u, v) = int tension v_z dA for all v."""
-        return np.asarray(self.factors(0 * tension).solve(self.forces(tension)))
-
     @property
     def yields(self) -> NDArray[np.bool_]:
         """Which of the points move with the mesh, (q,)."""
         return np.asarray(np.diff(self.values.indptr) > 0)
-
-    def scaled(self, a: float) -> Body:
-        """The same body a times as large: its stiffness grows as its size."""
-        return Body(self.stiffness * a, self.values, self.radii * a, self.area * a**2, self.depths * a, self.rim * a)
 
 
 def discretise(

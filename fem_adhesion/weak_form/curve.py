@@ -18,7 +18,7 @@ from fem_adhesion.scene import Scene, require_scene
 from fem_adhesion.weak_form.body import Array, box, discretise
 from fem_adhesion.weak_form.contact import Contact
 from fem_adhesion.weak_form.newton import Equilibrium, even, newton
-from halfspace.equilibrium.events import Event, Tolerance, WithEvents, is_fold, points_of, tolerance_told
+from halfspace.equilibrium.events import Event, Tolerance, WithEvents, is_fold, tolerance_told
 from halfspace.errors import InputError, NotConverged, tried
 from halfspace.laws import LENNARD_JONES
 from halfspace.limits import require_between
@@ -165,19 +165,6 @@ class Curve(WithEvents, States):
         told = tolerance_told(self.rtol, self.missed)
         return f"<Curve of tabor {self.tabor:g}, {len(self.load)} points: {found}; {told}>"
 
-    @property
-    def stable_under_dead_load(self) -> NDArray[np.bool_]:
-        """Stability under a dead load: stable under fixed grips, and the load rises with the approach."""
-        return np.asarray(self.stable & (self.rates[:, 0] * self.rates[:, 1] > 0))
-
-    def to_dict(self) -> dict[str, Any]:
-        """All numbers as plain data, as of `halfspace.EquilibriumPath.to_dict`; energy and margin are not known."""
-        return {
-            "events": self.tolerance.told(self.events),
-            "curve": points_of(self),
-            **{name: getattr(self, name) for name in ("met", "unknowns", "seconds", "settings")},
-        }
-
 
 def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0) -> Curve:
     """Trace the load-approach curve by Newton's method for all displacements at once.
@@ -268,14 +255,9 @@ def _event(name: str, path: Path, coarse: Point | None, fine: Point) -> Event:
 def require_served(scene: Scene, rtol: float, to_load: float) -> None:
     """Refuse a scene or a value that the weak form is not written for; raise InputError."""
     require_scene(scene)
-    counts = {
-        "body": (scene.body.name, scene.body.name == "half-space", "half-space"),
-        "profile": (scene.shape, scene.shape == Paraboloid(), "paraboloid"),
-        "law": (scene.law, scene.law == LENNARD_JONES, "the 3-9 law"),
-    }
-    for name, (value, served, limit) in counts.items():
-        if not served:
+    served = {"body": "half-space", "profile": Paraboloid(), "law": LENNARD_JONES}
+    for (name, limit), value in zip(served.items(), (scene.body.name, scene.shape, scene.law), strict=True):
+        if value != limit:
             raise InputError(f"{name} = {value} by the weak form, limit: {limit}; take fem_adhesion.trace, solver fem")
-    values = {"tabor": scene.tabor, "poisson": scene.poisson, "rtol": rtol, "to_load": to_load}
-    for name, value in values.items():
+    for name, value in zip(LIMITS, (scene.tabor, scene.poisson, rtol, to_load), strict=True):
         require_between(value, name, *LIMITS[name], "take fem_adhesion.trace, solver fem", " of the weak form")

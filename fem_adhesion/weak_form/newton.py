@@ -60,11 +60,6 @@ class Equilibrium(Valued):
         return self.contact.load_rate(self.y, self.rate)
 
     @property
-    def energy(self) -> float:
-        """Potential energy in R dgamma eps, see `Contact.energy`."""
-        return self.contact.energy(self.u, self.approach)
-
-    @property
     def central_gap(self) -> float:
         """H(0) in eps: the displacement is even and smooth across the axis, as the profile need not be."""
         return -self.approach - self.contact.tabor * float(even(self.contact.body, self.contact.body.rise(self.u))(0.0))
@@ -75,14 +70,10 @@ class Equilibrium(Valued):
         radii = even(self.contact.body, self.y[:-1] - self.contact.law.edge).roots(extrapolate=False)
         return float(radii[-1]) if radii.size and radii[-1] > 0 else float("nan")
 
-    def at_approach(self, approach: float) -> Equilibrium:
-        """Equilibrium nearby at an approach, from what the tangent predicts."""
-        return newton(self.contact, self.y + (approach - self.approach) * self.rate, at_approach(approach))
-
-    def at_load(self, load: float) -> Equilibrium:
-        """Equilibrium nearby at a load, from what the tangent predicts."""
-        start = self.y + (load - self.load) / self.stiffness * self.rate
-        return newton(self.contact, start, at_load(self.contact, load))
+    def nearby(self, condition: Condition) -> Equilibrium:
+        """Equilibrium nearby that meets a condition, from what the tangent predicts."""
+        missing, along = condition(self.y)
+        return newton(self.contact, self.y + missing / along(self.rate) * self.rate, condition)
 
 
 def even(body: Body, values: Array) -> CubicSpline:

@@ -19,6 +19,7 @@ from halfspace.equilibrium.events import (
     WithEvents,
     is_fold,
     points_of,
+    stable_under_dead_load,
     tolerance_told,
     usual,
 )
@@ -252,21 +253,22 @@ class EquilibriumPath(WithEvents, Valued):
     @cached_property
     def stable_under_dead_load(self) -> NDArray[np.bool_]:
         """Stability under a dead load: stable under fixed grips and dW/dalpha positive, shape (points,)."""
-        rates = np.array([point.rates for point in self.points])
-        return np.asarray(self.stable & (rates[:, LOAD] * rates[:, APPROACH] > 0))
+        return stable_under_dead_load(self)
+
+    @property
+    def rates(self) -> Array:
+        """Of approach, load, central gap and contact radius along the path, per arclength, shape (points, 4)."""
+        return np.array([point.rates for point in self.points])
 
     def to_dict(self) -> dict[str, Any]:
-        """All numbers as plain data: events, points, energy, and what they rest on.
+        """All numbers as plain data, as of `WithEvents`, with the jumps, the margin and the energy.
 
-        ``events`` are by name, each a mapping of its numbers and their errors, ``approach`` ... and
-        ``approach_error`` ..., and which of them are ``missed``; ``curve`` has the arrays of the points by name, with
-        ``stable_under_fixed_grips`` and ``stable_under_dead_load``; ``energy_released`` is the attribute ``energy``,
-        ``model_uncertainty`` is ``spread``, ``unconfirmed_folds`` are ``unconfirmed``, all else is as the attributes.
+        ``energy_released`` is the attribute ``energy``, ``model_uncertainty`` is ``spread``, ``unconfirmed_folds`` are
+        ``unconfirmed``.
         """
         return {
-            "events": self.tolerance.told(self.events),
-            "curve": points_of(self),
-            **{name: getattr(self, name) for name in ("met", "unknowns", "seconds", "settings", "jumps", "margin")},
+            **super().to_dict(),
+            **{name: getattr(self, name) for name in ("jumps", "margin")},
             "model_uncertainty": self.spread,
             "energy_released": self.energy,
             "unconfirmed_folds": [fold._asdict() for fold in self.unconfirmed],

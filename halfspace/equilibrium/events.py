@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.conditions import ROUND_OFF, Located
@@ -178,12 +179,30 @@ class WithEvents:
             raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
         return self.events.get(name)
 
+    def to_dict(self) -> dict[str, Any]:
+        """All numbers as plain data: events, points, and what they rest on.
+
+        ``events`` are by name, each a mapping of its numbers and their errors, ``approach`` ... and
+        ``approach_error`` ..., and which of them are ``missed``; ``curve`` has the arrays of the points by name, with
+        ``stable_under_fixed_grips`` and ``stable_under_dead_load``; all else is as the attributes.
+        """
+        return {
+            "events": self.tolerance.told(self.events),
+            "curve": points_of(self),
+            **{name: getattr(self, name) for name in ("met", "unknowns", "seconds", "settings")},
+        }
+
 
 def points_of(path: Any) -> dict[str, Array]:
     """Arrays of the points of a load-approach curve by name, with their errors and stability."""
     names = ("arclength", *OBSERVABLES, *(f"{name}_error" for name in OBSERVABLES))
-    stable = {"stable_under_fixed_grips": path.stable, "stable_under_dead_load": path.stable_under_dead_load}
+    stable = {"stable_under_fixed_grips": path.stable, "stable_under_dead_load": stable_under_dead_load(path)}
     return {name: getattr(path, name) for name in names} | stable
+
+
+def stable_under_dead_load(path: Any) -> NDArray[np.bool_]:
+    """Stability of the points under a dead load: stable under fixed grips and dW/dalpha positive, shape (points,)."""
+    return np.asarray(path.stable & (path.rates[:, LOAD] * path.rates[:, APPROACH] > 0))
 
 
 def tolerance_told(rtol: float, missed: Mapping[str, Sequence[str]]) -> str:
