@@ -15,7 +15,7 @@ from fem_adhesion.benchmark.problems import KINDS, Problem
 from fem_adhesion.benchmark.study import Diagnosis, Row
 from fem_adhesion.benchmark.submission import CURVES, NUMBERS
 from fem_adhesion.common.numbers import digits, with_error
-from fem_adhesion.common.page import data_rows, data_text
+from fem_adhesion.common.page import Table, data_rows, data_text, write_csv
 from fem_adhesion.common.record import UNITS
 from fem_adhesion.common.terminal import Column, Fitted, Prose
 from fem_adhesion.registry import name_of
@@ -69,7 +69,7 @@ def verdict(found: Diagnosis) -> Iterator[str]:
 
 
 def write(problems: Sequence[Problem], directory: Path) -> None:
-    """Write a sheet for each problem, a template of numbers for all, and a template of a curve."""
+    """Write a sheet for each problem, a template of numbers for all, one of a curve, and the record of the run."""
     words = {row["name"]: row["words"] for row in data_rows("benchmark", "statements.csv")}
     sheet = Template(data_text("benchmark", "sheet.md.template"))
     for problem in problems:
@@ -89,6 +89,7 @@ def write(problems: Sequence[Problem], directory: Path) -> None:
             table="\n".join(table),
         )
         (directory / f"{problem.name}.md").write_text(text, "utf-8")
-    lines = [f"{problem.name},{name},,{UNITS[KINDS[name]]}," for problem in problems for name in problem.values]
-    (directory / "numbers.csv").write_text("\n".join([",".join((*NUMBERS, "unit", "error")), *lines, ""]))
-    (directory / "curve.csv").write_text(f"{','.join(CURVES)}\n{problems[0].name},,\n")
+    lines = [(problem.name, name, "", UNITS[KINDS[name]], "") for problem in problems for name in problem.values]
+    numbers = Table("numbers", "numbers", "to be filled in", (*NUMBERS, "unit", "error"), lines)
+    curve = Table("curve", "points of a curve", "to be filled in", CURVES, [(problems[0].name, "", "")])
+    write_csv((numbers, curve), directory)

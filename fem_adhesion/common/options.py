@@ -179,6 +179,9 @@ def add_workers(command: Parser) -> None:
     command.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
 
 
+TABLES = {"csv", "stress"}  # outputs that are tables
+
+
 def require_distinct(*paths: Path | None) -> None:
     """Refuse two outputs under one name."""
     seen: set[Path] = set()
@@ -192,16 +195,16 @@ def require_distinct(*paths: Path | None) -> None:
 
 @contextmanager
 def all_written(**paths: Path | None) -> Iterator[dict[str, TextIO]]:
-    """Open the files of all outputs that are given, by name: all appear or none. A table gets a file for its record.
+    """Open the files of all outputs that are given, by name: all appear or none. Tables get files for their records.
 
-    The record's file is named ``metadata``; what is written to standard output has none.
+    See `fem_adhesion.common.record.write_records`; what is written to standard output has none.
     """
     require_distinct(*paths.values())
     given = {name: path for name, path in paths.items() if path}
-    if (table := given.get("csv")) and table != STANDARD:
+    if tables := {name: given[name] for name in given.keys() & TABLES if given[name] != STANDARD}:
         from fem_adhesion.common.record import beside
 
-        given["metadata"] = beside(table)
+        given |= {f"{name} record": beside(table) for name, table in tables.items()}
     with all_written_aside(list(given.values())) as files:
         yield dict(zip(given, files, strict=True))
 

@@ -68,6 +68,13 @@ def write_beside(file: TextIO, table: str, head: Mapping[str, Any]) -> None:
     json.dump({"@context": "http://www.w3.org/ns/csvw", "url": table, **head}, file, indent=1, allow_nan=False)
 
 
+def write_records(files: Mapping[str, TextIO], head: Mapping[str, Any], **tables: Path | None) -> None:
+    """Write the record of each table that has a file for it, see `fem_adhesion.common.options.all_written`."""
+    for name, table in tables.items():
+        if table and (file := files.get(f"{name} record")):
+            write_beside(file, table.name, head)
+
+
 def lines_of(table: Path, remedy: str = "run its command again") -> list[list[str]]:
     """Lines of a CSV file, the names of its columns first; InputError if it is none, empty, or its lines differ."""
     try:

@@ -120,7 +120,7 @@ def _write(
     options: argparse.Namespace, curves: Curves, collapsed: LawCurves | None, files: Mapping[str, TextIO]
 ) -> None:
     """Write the files that are open, by the names of their options."""
-    from fem_adhesion.common.record import write_beside
+    from fem_adhesion.common.record import write_records
     from fem_adhesion.curve import record
 
     if collapsed:
@@ -130,8 +130,7 @@ def _write(
         json.dump(record.record(curves) | told, files["json"], indent=1, allow_nan=False)
     if "csv" in files:
         record.write_csv(curves, files["csv"])
-    if "metadata" in files:
-        write_beside(files["metadata"], options.csv.name, record.head(curves))
+    write_records(files, record.head(curves), csv=options.csv, stress=options.stress and Path(options.stress[1]))
     if "plot" in files:
         from fem_adhesion.common import style
         from fem_adhesion.curve import figure

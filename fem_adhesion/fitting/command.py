@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.common.files import open_store
     from fem_adhesion.common.jobs import progress_bar
     from fem_adhesion.common.numbers import parse
-    from fem_adhesion.common.record import record, write_beside
+    from fem_adhesion.common.record import record, write_records
     from fem_adhesion.fitting import folder, plugin
 
     given = asked(options)
@@ -110,8 +110,7 @@ def run(options: argparse.Namespace) -> int:
         head = record(None, {}, **{"curves": options.curves, **reading, **given})
         if "csv" in files:
             folder.write_csv(rows, files["csv"])
-        if "metadata" in files:
-            write_beside(files["metadata"], options.csv.name, head)
+        write_records(files, head, csv=options.csv)
         if "json" in files:
             json.dump({**head, **content}, files["json"], indent=1, allow_nan=False)
         if "plot" in files:

@@ -77,7 +77,7 @@ def run(options: argparse.Namespace) -> int:
         1 if any curve could not be traced, else 0.
     """
     from fem_adhesion.common.files import open_store
-    from fem_adhesion.common.record import record, write_beside
+    from fem_adhesion.common.record import record, write_records
     from fem_adhesion.sweep import study
     from halfspace.limits import require_load, require_rtol
 
@@ -92,8 +92,7 @@ def run(options: argparse.Namespace) -> int:
         found = known | dict(zip(todo, traced, strict=True))
         curves = [found[tabor] for tabor in tabors]
         study.write_csv(curves, files["csv"], known)
-        if "metadata" in files:
-            write_beside(files["metadata"], options.csv.name, record(tabor=tabors, **asked))
+        write_records(files, record(tabor=tabors, **asked), csv=options.csv)
     failed = [curve for curve in curves if curve.reason]
     out = sys.stderr if options.csv == STANDARD else sys.stdout
     solved = [curve for curve in curves if not curve.reason]

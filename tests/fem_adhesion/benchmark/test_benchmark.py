@@ -11,6 +11,7 @@ import pytest
 
 from fem_adhesion import cli
 from fem_adhesion.benchmark import problems
+from fem_adhesion.common import record
 from fem_adhesion.common.page import data_rows
 from fem_adhesion.registry import PARTS
 from halfspace import atlas
@@ -189,6 +190,7 @@ def test_a_filled_template_agrees_with_its_sheets(judged, tmp_path):
     assert cli.main(["benchmark", "--problems", str(tmp_path / "sheets"), "--names", *names]) == 0
     sheets = {name: (tmp_path / "sheets" / f"{name}.md").read_text() for name in names}
     ours = {name: dict(re.findall(r"\| (\w+) \| (-?[\d.]+) \|", sheet)) for name, sheet in sheets.items()}
+    assert record.read(tmp_path / "sheets" / "numbers.csv")["command"].startswith("fem-adhesion benchmark --problems")
     with (tmp_path / "sheets" / "numbers.csv").open() as file:
         header, *rows = csv.reader(file)
     assert len(rows) == sum(map(len, ours.values()))

@@ -8,6 +8,7 @@ import pytest
 
 import halfspace
 from fem_adhesion import cli
+from fem_adhesion.common import record
 
 STRESS = ("rr", "zz", "hoop", "rz")
 
@@ -42,6 +43,15 @@ def test_a_file_of_points_in_si_is_the_line_again(capsys, tmp_path):
     for name in STRESS:
         unit = np.abs(line[f"stress_{name}_Pa"]).max()
         assert again[f"stress_{name}_Pa"] == pytest.approx(line[f"stress_{name}_Pa"], abs=1e-6 * unit)
+
+
+def test_a_table_beside_that_of_the_curve_has_a_record_of_its_own(tmp_path):
+    curve, stress = tmp_path / "curve.csv", tmp_path / "stress.csv"
+    arguments = ("--tabor", "0.1", "--solver", "fem", "--rtol", "1e-2", "--csv", str(curve))
+    assert cli.main(["curve", *arguments, "--stress", "axis", str(stress)]) == 0
+    for table in (curve, stress):
+        assert record.beside(table).exists()
+        assert f"--stress axis {stress}" in record.read(table)["command"]
 
 
 @pytest.mark.parametrize(
