@@ -1,8 +1,9 @@
-"""Estimates against the truth: ``python tests/estimates honesty``, ``hard`` or ``constants``.
+"""Estimates against the truth: ``python tests/estimates honesty``, ``hard``, ``constants`` or ``intervals``.
 
 ``honesty`` judges families of scenes, all or those named; ``hard`` attempts the hard cases; ``constants`` measures what
-each number of an algorithm decides. A full run of ``honesty`` ends with five of these, drawn. A campaign of random
-scenes, which goes on where it was ended: ``honesty --families "half-space, random" --count 500 --seed 7 --file F``.
+each number of an algorithm decides; ``intervals`` judges those of fitted curves. A full run of ``honesty`` ends with
+five of the constants, drawn. A campaign of random scenes, which goes on where it was ended: ``honesty --families
+"half-space, random" --count 500 --seed 7 --file F``.
 """
 
 import argparse
@@ -51,6 +52,13 @@ def constants(asked):
     return measure(asked.names)
 
 
+def intervals(asked):
+    """Print how often the intervals of a fit hold the truth; 1 if too seldom."""
+    from intervals import judge
+
+    return judge(asked.count)
+
+
 def main(arguments=None):
     """Run what is asked for; exit code 1 if something is not as it should be."""
     parser = argparse.ArgumentParser(prog="tests/estimates", description=__doc__)
@@ -70,6 +78,9 @@ def main(arguments=None):
     tool = tools.add_parser("constants")
     tool.set_defaults(run=constants)
     tool.add_argument("--names", nargs="+", metavar="NAME", help="Class or Class.field; all unless given")
+    tool = tools.add_parser("intervals")
+    tool.set_defaults(run=intervals)
+    tool.add_argument("--count", type=int, default=200, help="of the curves")
     asked = parser.parse_args(arguments)
     return asked.run(asked)
 
