@@ -22,7 +22,6 @@ What it is good for, and what not:
 * Of a whole sphere, only the half that faces the wall attracts; the other would take O((eps/R)^2) off the load.
 * Tabor parameters from 1e-12 to 300, Poisson's ratio up to 0.499999, loads up to 1000 R dgamma; the error message
   says what serves beyond, such as a closed form of `halfspace.theories`.
-* Blocks with a ``far_field`` of "clamped" or "free" need a fixed mesh, up to a Tabor parameter of 3.
 """
 
 from importlib import import_module

@@ -16,7 +16,6 @@ from fem_adhesion.discretise import (
     CURVE_DEGREE,
     Discretised,
     discretise,
-    finest_length,
     size_for,
     sized_body,
 )
@@ -25,9 +24,9 @@ from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy.grids import GRIDS, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
-from halfspace.accuracy.stages import Charted, Charts, Rung
+from halfspace.accuracy.stages import Charted, Charts, Rung, charted
+from halfspace.accuracy.stages import Discretised as DiscretisedCurve
 from halfspace.accuracy.standing import Standing, left_between, standing
-from halfspace.elastic import grid
 from halfspace.elastic.compliance import to_infinity
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
@@ -103,19 +102,19 @@ def _traced(scene: Scene, rtol: float, to_load: float) -> EquilibriumPath:
 def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: first the degree of the rung below on a larger block, then one degree more.
 
-    A block of given size is compared with a second smaller one beside these.
+    A block of given size is compared with a second smaller one, between these.
     """
     (above, size), (below, _) = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
-    stages = tuple(Charted(block_charts(scene, how, size, to_load)) for how in ((below, above) if level else ()))
-    curve = partial(block_charts, scene, above, size, to_load)
-    coarser, rule = None, ErrorRule(1.0)
-    if scene.body.cut_off is not None and level:
-        # There is but one other size: where both are small a number may be alike on them by accident, which a third
-        # tells. Without it a contact radius was 4 times outside on a block of 21 beta, an energy 1.3 times.
-        coarser = Charted(block_charts(scene, below, resolution_for(scene, rtol, level - 2)[1], to_load))
-        rule = replace(rule, parts=(GRIDS.before, 1.0, 1.0))
+    block = partial(discretised_block, scene, to_load)
+    curve, *stages = block(above, size)
+    if level:
+        # Where both sizes are small a number may be alike on them by accident, which a third, between them, tells.
+        sizes = (size,) if scene.body.cut_off is None else (size / math.sqrt(_larger(scene)), size)
+        stages = [*(block(below, each)[1] for each in sizes), *stages]
     settings = {name: getattr(above, name) for name in ("degree", "finest", "growth")}
-    return Rung(curve, stages, settings | {"radius": size}, coarser=coarser, rule=rule)
+    # What a clamp and what the attraction beyond it change may cancel: with 1 approaches were up to 1.5 times outside.
+    rule = ErrorRule(1.0 if scene.body.endless else 2.0)
+    return Rung(curve, tuple(stages), settings | {"radius": size}, rule=rule)
 
 
 def resolution_for(scene: Scene, rtol: float, level: int) -> tuple[Discretisation, float]:
@@ -125,22 +124,30 @@ def resolution_for(scene: Scene, rtol: float, level: int) -> tuple[Discretisatio
     level 1.
     """
     degree = int(np.clip(np.ceil(-np.log10(rtol)), 3, 9)) + level
-    larger, size = LARGER_ENDLESS if scene.body.endless else LARGER_HELD, scene.body.cut_off
+    larger, size = _larger(scene), scene.body.cut_off
     if size is None:
         return Discretisation(degree), size_for(scene.scales, rtol) * larger**level
     return Discretisation(degree), size * larger ** (level - 1)
 
 
-def block_charts(scene: Scene, how: Discretisation, radius: float, to_load: float = COMPRESSION) -> Charts:
-    """Charts of the scene's block of a size in beta.
+def _larger(scene: Scene) -> float:
+    return LARGER_ENDLESS if scene.body.endless else LARGER_HELD
 
-    A block continued by a half-space has no length of its own, so its mesh may follow the contact edge; one that is
-    clamped or free has, and needs a mesh that is fine wherever the edge passes.
+
+def discretised_block(scene: Scene, to_load: float, how: Discretisation, size: float) -> DiscretisedCurve:
+    """Charts for the curve, and the stage for events, of the scene's block of a size in beta.
+
+    A block continued by a half-space has no length of its own, so that one mesh may follow the contact edge; one that
+    is clamped or free has, and is discretised as any body with a length.
     """
-    if not scene.body.endless:
-        widest = min(scene.scales.widest_radius(to_load), radius / 2)
-        made = discretise(scene, grid.graded(0.0, finest_length(scene, how), radius, until=widest), how)
-        return (Chart(made.problem, made.unknowns),)
+    if scene.body.endless:
+        return charted(block_charts(scene, how, size, to_load))
+    body = replace(sized_body(scene, how, to_load), outer=np.array([size]), widest=size / 2)
+    return body.curve, standing(body, left_between(how.degree + 2))
+
+
+def block_charts(scene: Scene, how: Discretisation, radius: float, to_load: float = COMPRESSION) -> Charts:
+    """Charts of the scene's block of a size in beta, continued by a half-space."""
     extent = np.sqrt(2 * scene.tabor * float(scene.surface.height(np.array(radius))))
     lines = rings(scene.scales, how.finest, how.growth, extent, to_load, how.degree + 2)
     centred = _to_infinity(scene, lines.centred, how)

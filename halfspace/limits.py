@@ -158,14 +158,6 @@ def require_radius(radius: float, tabor: float = math.inf) -> float:
     return _require(radius, "radius", least < radius <= 1e9, f"{least:.3g} < radius <= 1e9", remedy)
 
 
-def require_fixed_mesh(tabor: float) -> float:
-    """Return the Tabor parameter, or raise InputError if a mesh that does not follow the contact edge is too dear.
-
-    It must be fine wherever the edge passes: 8 mu^2 cells, at 10 s a curve for tabor 3 and minutes for 5.
-    """
-    return _require(tabor, "tabor", tabor <= 3, "tabor <= 3 for a fixed mesh", 'take far_field = "point_load"')
-
-
 def require_radius_ratio(radius_ratio: float, tabor: float = 0.0) -> float:
     """Return R/eps, or raise InputError unless it is 2 to 1e12 and R/beta = sqrt(radius_ratio/tabor) at least 1.5.
 

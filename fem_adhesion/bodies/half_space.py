@@ -12,7 +12,7 @@ from fem_adhesion.bodies.body import BESIDE, Body, Discretisation, Layout
 from halfspace.elastic import grid
 from halfspace.elastic.grid import FLAT
 from halfspace.errors import InputError
-from halfspace.limits import require_fixed_mesh, require_one_of, require_radius
+from halfspace.limits import require_one_of, require_radius
 from halfspace.values import Array, keep
 
 BlockFarField = Literal["point_load", "clamped", "free"]
@@ -71,7 +71,7 @@ class Block(Body):
         Its size L in beta.
     far_field : {"point_load", "clamped", "free"}
         What holds it at its far boundary: a half-space beyond it that moves as under a point load, a clamp, or nothing
-        but the uniform traction that balances the load. The last two need a fixed mesh, up to a Tabor parameter of 3.
+        but the uniform traction that balances the load.
     """
 
     radius: float
@@ -89,23 +89,22 @@ class Block(Body):
         keep(self, words=[*self.words, f"size {self.radius:g} beta", *([] if self.endless else [self.far_field])])
 
     def check(self, tabor: float, end: float) -> None:
-        """Refuse a block smaller than its contact, one that needs a mesh too fine, or one under a sphere."""
+        """Refuse a block smaller than its contact, or one under a sphere."""
         if math.isfinite(end):
             raise InputError(f"profile that ends at {end:.4g} beta does not go with {self.name}; take a half-space")
         require_radius(self.radius, tabor)
-        if not self.endless:
-            require_fixed_mesh(tabor)
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Its surface ends where it does."""
         return np.array([self.radius]), FLAT
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
-        """Block as large as the lines."""
-        return _as_deep_as_wide(lines, how)
+        """Block as large as the lines, which are in contact radii where it goes on beyond them."""
+        return _as_deep_as_wide(lines, how, np.inf if self.endless else length)
 
 
-def _as_deep_as_wide(lines: Array, how: Discretisation) -> Any:
+def _as_deep_as_wide(lines: Array, how: Discretisation, length: float = np.inf) -> Any:
     from fem_adhesion.mesh.block import tensor_grid
 
-    return tensor_grid(lines, grid.graded(0.0, np.diff(lines).min(), float(lines[-1]), growth=how.growth))
+    shortest = np.diff(lines).min() if np.isinf(length) else length
+    return tensor_grid(lines, grid.graded(0.0, shortest, float(lines[-1]), growth=how.growth))

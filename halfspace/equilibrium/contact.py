@@ -350,7 +350,7 @@ def require_narrow(radius: float, limit: float) -> None:
     if radius > limit:
         raise ContactTooWide(
             f"contact radius = {radius:.3g} beta, limit: {limit:.3g}, beyond which the body is taken as rigid; take a "
-            "blunter tip, a thicker layer or the half-space solver"
+            "blunter tip, a thicker layer, a larger block or the half-space solver"
         )
 
 

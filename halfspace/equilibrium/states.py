@@ -38,7 +38,7 @@ from halfspace.equilibrium.events import ErrorRule, errors_of
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, solved_point
 from halfspace.equilibrium.search import Chains, confirmed, turns
-from halfspace.errors import InputError, NotConverged, Unsolved, required
+from halfspace.errors import InputError, NotConverged, Unsolved, required, tried
 from halfspace.limits import require_numbers
 from halfspace.values import Array, States, Valued
 
@@ -93,8 +93,10 @@ def with_beside(
     chain: Sequence[T], twin: Stage | None, coarser: Stage | None, again: Callable[[Stage, T], T | Unsolved]
 ) -> list[list[T]] | Unsolved:
     """Chains of a state: its own, after a coarser discretisation where that has it, and from a twin to its last."""
-    fine = chain[-1]
-    own = [again(coarser, fine) or chain[0], *chain] if coarser else list(chain)
+    fine, own = chain[-1], list(chain)
+    if coarser:
+        before = tried(again, coarser, fine)  # as on a smaller block, which may not carry the contact
+        own = [before or chain[0], *chain]
     if twin is None:
         return [own]
     there = again(twin, fine)
