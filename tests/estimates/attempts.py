@@ -334,7 +334,7 @@ REFUSED = {  # what is attempted, and the class, value, limit and remedy of the 
         partial(block, 1.0, radius=5.5, far_field="clamped"),
         ContactTooWide,
         "contact radius = 1.7",
-        "limit: 1.7 beta",
+        "limit: 1.7",
         "a larger block",
     ),
     "block of 5.5 beta, tabor 0.02": (
