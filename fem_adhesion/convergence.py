@@ -22,11 +22,11 @@ from fem_adhesion.discretise import (
 from fem_adhesion.elasticity.elimination import DISSECTED
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
+from halfspace.accuracy import stages as ladders
 from halfspace.accuracy.grids import GRIDS, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung, charted
-from halfspace.accuracy.stages import Discretised as DiscretisedCurve
-from halfspace.accuracy.standing import Standing, left_between, standing
+from halfspace.accuracy.standing import Standing, left_between, sized, standing
 from halfspace.elastic.compliance import to_infinity
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
@@ -38,7 +38,7 @@ from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array
 
 # Ratio of the block's radii on two successive rungs. The load left out beyond a block that goes on as a half-space
-# falls as L^-4: a decade. Held blocks err by O(1/L): half the change from L/3 to L exceeds the error at L.
+# falls as L^-4: a decade. Held blocks err by O(1/L), which a change from L/3 to L exceeds twice.
 LARGER_ENDLESS, LARGER_HELD = 10**0.25, 3.2
 
 FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
@@ -105,11 +105,13 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     A block of given size is compared with a second smaller one, between these.
     """
     (above, size), (below, _) = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
-    block = partial(discretised_block, scene, to_load)
+    block, given = partial(discretised_block, scene, to_load), scene.body.cut_off
     curve, *stages = block(above, size)
+    if not scene.body.endless:  # traced on the whole, which carries contacts that a smaller one does not
+        curve, _ = block(Discretisation(CURVE_DEGREE + level), given or size)
     if level:
         # Where both sizes are small a number may be alike on them by accident, which a third, between them, tells.
-        sizes = (size,) if scene.body.cut_off is None else (size / math.sqrt(_larger(scene)), size)
+        sizes = (size / math.sqrt(_larger(scene)), size) if given else (size,)
         stages = [*(block(below, each)[1] for each in sizes), *stages]
     settings = {name: getattr(above, name) for name in ("degree", "finest", "growth")}
     # What a clamp and what the attraction beyond it change may cancel: with 1 approaches were up to 1.5 times outside.
@@ -134,7 +136,7 @@ def _larger(scene: Scene) -> float:
     return LARGER_ENDLESS if scene.body.endless else LARGER_HELD
 
 
-def discretised_block(scene: Scene, to_load: float, how: Discretisation, size: float) -> DiscretisedCurve:
+def discretised_block(scene: Scene, to_load: float, how: Discretisation, size: float) -> ladders.Discretised:
     """Charts for the curve, and the stage for events, of the scene's block of a size in beta.
 
     A block continued by a half-space has no length of its own, so that one mesh may follow the contact edge; one that
@@ -142,8 +144,8 @@ def discretised_block(scene: Scene, to_load: float, how: Discretisation, size: f
     """
     if scene.body.endless:
         return charted(block_charts(scene, how, size, to_load))
-    body = replace(sized_body(scene, how, to_load), outer=np.array([size]), widest=size / 2)
-    return body.curve, standing(body, left_between(how.degree + 2))
+    body = replace(sized_body(scene, how, to_load), outer=np.array([size]), planned=size / 2)
+    return sized(body, how.degree + 2)
 
 
 def block_charts(scene: Scene, how: Discretisation, radius: float, to_load: float = COMPRESSION) -> Charts:

@@ -119,7 +119,8 @@ def layout_of(scene: Scene, how: Discretisation) -> Layout:
 def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) -> SizedBody:
     """Bodies of a scene with a length, to be discretised on any grid of their surface, see `SizedBody`."""
     outer, coordinate = layout_of(scene, how)
-    last = at_equator(scene.tabor, scene.surface, how.degree + 2) if coordinate == FLAT else np.inf
+    ends = coordinate == FLAT and np.isfinite(scene.surface.end)
+    last = at_equator(scene.tabor, scene.surface, how.degree + 2) if ends else np.inf
     first = at_tip(scene.surface, how.degree + 2)
     finest = finest_length(scene, how) / scene.scales.edge_cell(1.0)
     return SizedBody(

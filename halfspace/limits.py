@@ -146,14 +146,14 @@ def require_points(points: int) -> int:
     return int(points)
 
 
-def require_radius(radius: float, tabor: float = math.inf) -> float:
+def require_radius(radius: float, tabor: float = math.inf, least: float = 5.0) -> float:
     """Return the size of a block, or raise InputError unless the contact and its attraction fit in, and it in floats.
 
-    A contact is 2 to 3 beta wide and a nearly rigid sphere attracts over some beta/sqrt(tabor); the error is estimated
-    from smaller blocks, the largest of which must do, too.
+    A contact is 2 to 3 beta wide and a nearly rigid sphere attracts over some beta/sqrt(tabor). The error is estimated
+    from smaller blocks, which must do, too: of one that is held from a third, so that it is `least` beta at least.
     """
     radius = require_number(radius, "radius")
-    least = 5 * max(1.0, tabor**-0.5)
+    least = max(least, 5 * tabor**-0.5)
     remedy = "a contact is 2 to 3 beta wide, take 50 or more, or a half-space"
     return _require(radius, "radius", least < radius <= 1e9, f"{least:.3g} < radius <= 1e9", remedy)
 

@@ -92,7 +92,7 @@ class Block(Body):
         """Refuse a block smaller than its contact, or one under a sphere."""
         if math.isfinite(end):
             raise InputError(f"profile that ends at {end:.4g} beta does not go with {self.name}; take a half-space")
-        require_radius(self.radius, tabor)
+        require_radius(self.radius, tabor, 5.0 if self.endless else 8.0)
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Its surface ends where it does."""

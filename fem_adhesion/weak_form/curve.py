@@ -255,9 +255,10 @@ def _event(name: str, path: Path, coarse: Point | None, fine: Point) -> Event:
 def require_served(scene: Scene, rtol: float, to_load: float) -> None:
     """Refuse a scene or a value that the weak form is not written for; raise InputError."""
     require_scene(scene)
-    served = {"body": "half-space", "profile": Paraboloid(), "law": LENNARD_JONES}
-    for (name, limit), value in zip(served.items(), (scene.body.name, scene.shape, scene.law), strict=True):
-        if value != limit:
+    known = {"half-space": "half-space", "paraboloid": Paraboloid(), "the 3-9 law": LENNARD_JONES}
+    given = {"body": scene.body.name, "profile": scene.shape, "law": scene.law}
+    for (limit, served), (name, value) in zip(known.items(), given.items(), strict=True):
+        if value != served:
             raise InputError(f"{name} = {value} by the weak form, limit: {limit}; take fem_adhesion.trace, solver fem")
-    for name, value in zip(LIMITS, (scene.tabor, scene.poisson, rtol, to_load), strict=True):
+    for name, value in {"tabor": scene.tabor, "poisson": scene.poisson, "rtol": rtol, "to_load": to_load}.items():
         require_between(value, name, *LIMITS[name], "take fem_adhesion.trace, solver fem", " of the weak form")

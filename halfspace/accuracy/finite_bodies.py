@@ -72,7 +72,7 @@ class SizedBody(Valued):
     R dgamma. No cell on the axis is longer than `first`, in beta; see `at_tip`. Where that is less work, `together`
     makes what `make` does of several grids, (n, m + 1), at once. In the logarithm of the contact radius the kernel is
     analytic up to `strip` beside the real axis: pi, where a node is the image of another, or pi/2 on strata, whose
-    images lie at their depth times i. A chart for a curve is made for contacts no wider than `widest`, in beta.
+    images lie at their depth times i. Charts for a curve are made for contacts as wide as `planned`, in beta, at most.
     """
 
     scales: Scales
@@ -86,7 +86,7 @@ class SizedBody(Valued):
     first: float = np.inf
     together: Callable[[Array], list[Made]] | None = None
     strip: float = np.pi
-    widest: float = np.inf
+    planned: float = np.inf
 
     @property
     def length(self) -> float:
@@ -149,7 +149,7 @@ class SizedBody(Valued):
         leaves any error.
         """
         body, end = self.scales.profile.end, self._widest
-        widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * body, self.widest)
+        widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * body, self.planned)
         require_narrow(widest, end)
         farther = max(widest, min(CHARTS.farther * widest, CHARTS.nearly * body, end))
         ends, counts = self._parts(min(self.leave, widest / 2), farther, error)

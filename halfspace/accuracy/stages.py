@@ -56,8 +56,8 @@ class Rung(Valued):
     every event is solved for; each differs from the one before in one respect, the last, which the settings tell, is
     the finest. The changes add up to the error, by the rule. On the lowest rung they only prepare, and there may be
     none. The twin is as fine as the rung below, with other cells: it errs as much, but not by the same accident of
-    sign. The coarser stage is coarser than the rung below by a node in each cell or a degree, or on a block of given
-    size that is smaller still: two neighbours may err alike. It need not have an event.
+    sign. The coarser stage is coarser than the rung below by a node in each cell or a degree: two neighbours may err
+    alike. It need not have an event.
     """
 
     curve: Callable[[], Iterable[Chart]]

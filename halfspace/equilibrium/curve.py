@@ -19,7 +19,6 @@ from halfspace.equilibrium.events import (
     WithEvents,
     is_fold,
     points_of,
-    stable_under_dead_load,
     tolerance_told,
     usual,
 )
@@ -249,11 +248,6 @@ class EquilibriumPath(WithEvents, Valued):
     def stable(self) -> NDArray[np.bool_]:
         """Stability under fixed grips, from the inertia of the tangent, shape (points,)."""
         return np.concatenate([_stable(segment) for segment in self.finest_curve.segments])
-
-    @cached_property
-    def stable_under_dead_load(self) -> NDArray[np.bool_]:
-        """Stability under a dead load: stable under fixed grips and dW/dalpha positive, shape (points,)."""
-        return stable_under_dead_load(self)
 
     @property
     def rates(self) -> Array:

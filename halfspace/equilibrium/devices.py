@@ -30,7 +30,7 @@ from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Segment, solved_point
 from halfspace.equilibrium.search import energy_size, states
 from halfspace.equilibrium.states import measured
-from halfspace.errors import InputError, NotConverged, Unsolved, required
+from halfspace.errors import InputError, NotConverged, Unsolved, required, tried
 from halfspace.limits import require_number
 from halfspace.values import Array, Estimate
 
@@ -279,8 +279,11 @@ def _refined(compliance: float, stage: Stage, states: JumpStates) -> JumpStates 
     take_off: Located = fold
 
     def land(state: Located, problem: Traceable) -> Located | Unsolved:
-        wide = _wide_enough(state, problem)
-        return landing_of(take_off, wide, transfer(state.problem, state.point.x, wide), compliance)
+        wide, base = _wide_enough(state, problem), _base(take_off, compliance)
+        found = tried(landing_of, take_off, wide, transfer(state.problem, state.point.x, wide), compliance)
+        # Where that is too far off, along the path.
+        there = replace(state, condition=Condition(APPROACH, value=base, compliance=compliance))
+        return found or stage.moved(there, wide)
 
     landing = settled(states.landing, stage, land)
     return landing and JumpStates(take_off, landing, states.on)

@@ -179,6 +179,11 @@ class WithEvents:
             raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
         return self.events.get(name)
 
+    @property
+    def stable_under_dead_load(self) -> NDArray[np.bool_]:
+        """Stability of the points under a dead load: stable under fixed grips and dW/dalpha positive, (points,)."""
+        return _under_dead_load(self)
+
     def to_dict(self) -> dict[str, Any]:
         """All numbers as plain data: events, points, and what they rest on.
 
@@ -196,12 +201,11 @@ class WithEvents:
 def points_of(path: Any) -> dict[str, Array]:
     """Arrays of the points of a load-approach curve by name, with their errors and stability."""
     names = ("arclength", *OBSERVABLES, *(f"{name}_error" for name in OBSERVABLES))
-    stable = {"stable_under_fixed_grips": path.stable, "stable_under_dead_load": stable_under_dead_load(path)}
+    stable = {"stable_under_fixed_grips": path.stable, "stable_under_dead_load": path.stable_under_dead_load}
     return {name: getattr(path, name) for name in names} | stable
 
 
-def stable_under_dead_load(path: Any) -> NDArray[np.bool_]:
-    """Stability of the points under a dead load: stable under fixed grips and dW/dalpha positive, shape (points,)."""
+def _under_dead_load(path: Any) -> NDArray[np.bool_]:
     return np.asarray(path.stable & (path.rates[:, LOAD] * path.rates[:, APPROACH] > 0))
 
 

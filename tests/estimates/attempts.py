@@ -32,7 +32,7 @@ from halfspace.equilibrium.conditions import ROUND_OFF, Condition, locate
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD, ContactProblem
 from halfspace.equilibrium.path import Steps
 from halfspace.equilibrium.search import find_events
-from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
+from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.profiles import Sphere
 from halfspace.scales import Scales
 from halfspace.values import Estimate
@@ -330,12 +330,8 @@ REFUSED = {  # what is attempted, and the class, value, limit and remedy of the 
         "exceeds 0.084 beta for tabor 2",
         "refine the grid there",
     ),
-    "clamped block of 5.5 beta, tabor 1": (
-        partial(block, 1.0, radius=5.5, far_field="clamped"),
-        ContactTooWide,
-        "contact radius = 1.7",
-        "limit: 1.7",
-        "a larger block",
+    "clamped block of 7 beta, tabor 1": (
+        partial(block, 1.0, radius=7.0, far_field="clamped"), InputError, "radius = 7", "8 <", "take 50 or more",
     ),
     "block of 5.5 beta, tabor 0.02": (
         partial(block, 0.02, radius=5.5), InputError, "radius = 5.5", "35.4 <", "take 50 or more",

@@ -86,8 +86,8 @@ def test_every_number_agrees_with_the_integral_equation(curve):
     [
         (Scene(1.0, Hemisphere(radius_ratio=100.0)), "body = hemisphere by the weak form, limit: half-space"),
         (Scene(1.0, Coated(1.0, 5.0)), "by the weak form, limit: half-space"),
-        (Scene(1.0, law=Morse(3)), "limit: PowerLaw"),
-        (Scene(1.0, profile=Power(4)), "limit: Paraboloid"),
+        (Scene(1.0, law=Morse(3)), "limit: the 3-9 law"),
+        (Scene(1.0, profile=Power(4)), "limit: paraboloid"),
         (Scene(30.0), "tabor = 30 of the weak form is outside 0.02 <= tabor <= 5"),
     ],
 )

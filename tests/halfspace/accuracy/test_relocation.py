@@ -16,10 +16,11 @@ from halfspace.equilibrium import conditions, events
 from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import APPROACH
+from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import NotConverged, Unsolved
 from halfspace.laws import LENNARD_JONES, Dlvo
-from halfspace.profiles import Hyperboloid
+from halfspace.profiles import Hyperboloid, Paraboloid, RoundedPunch
 from halfspace.scales import Scales
 
 
@@ -46,6 +47,23 @@ def test_a_number_that_two_blocks_share_by_accident_is_not_taken_for_exact(tabor
     block = Block(radius=radius, far_field=far_field, poisson=0.0)
     found = fem_adhesion.trace(Scene(tabor, block, law=law), rtol=rtol)
     assert differing(found, halfspace.trace(tabor, law=law, rtol=1e-6)) == []
+
+
+@pytest.mark.parametrize(
+    ("tabor", "radius", "far_field", "profile"),
+    [
+        (15.0, 30.0, "free", Paraboloid()),  # a landing far off on the other sizes
+        (15.0, 50.0, "clamped", Paraboloid()),  # and beyond the fine cells of its grid
+        (1.0, 10.0, "free", Paraboloid()),  # a contact that in the end the smallest does not carry
+        (1.0, 50.0, "clamped", RoundedPunch(0.5)),  # whose height far away is no number
+    ],
+)
+def test_a_held_block_has_the_jumps_of_a_half_space_within_its_errors(tabor, radius, far_field, profile):
+    found = fem_adhesion.trace(Scene(tabor, Block(radius=radius, far_field=far_field), profile), rtol=1e-2)
+    true = halfspace.trace(tabor, profile=profile, rtol=1e-6)
+    assert differing(found, true) == []
+    lost, exact = (cycle(path).energy_lost for path in (found, true))
+    assert abs(lost.value - exact.value) <= lost.error + exact.error
 
 
 def test_the_pull_off_of_a_wide_contact_does_not_stay_where_its_grid_was_made():

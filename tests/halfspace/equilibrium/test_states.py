@@ -169,6 +169,21 @@ def test_points_of_a_curve_are_within_their_errors(tabor, rtol, parts):
     assert np.mean(np.array(told) <= 100 * np.maximum(off, 1e-11)) >= 0.5
 
 
+def test_a_point_between_two_is_told_the_larger_of_their_errors(monkeypatch):
+    path = halfspace.trace(2.0, rtol=1e-3)
+    curve, first = path.finest_curve, 0
+    all_told = curve.errors
+    monkeypatch.setattr("halfspace.equilibrium.states.EVERY", 1)
+    own = replace(curve).errors
+    for segment in curve.segments:
+        here = slice(first, first + len(segment.points))
+        told, theirs = all_told[here, :2], own[here, :2]
+        np.testing.assert_array_equal(told[::3], theirs[::3])
+        for low in range(0, len(told) - 3, 3):
+            np.testing.assert_array_equal(told[low + 1], np.maximum(theirs[low], theirs[low + 3]))
+        first = here.stop
+
+
 def test_a_contact_that_is_there_at_once_ends_no_branch():
     """On a flat tip the grid around the edge rippled before the contact was as wide as that."""
     path = halfspace.trace(0.01, profile=Power(10.0), rtol=1e-4)
