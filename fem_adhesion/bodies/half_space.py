@@ -41,7 +41,7 @@ class HalfSpace(Body):
         from fem_adhesion.mesh.spheres import with_contact_to
 
         if np.isinf(R):
-            return _as_deep_as_wide(lines, how)
+            return _as_deep_as_wide(lines, _shortest(lines), how)
         past = grid.geometric((how.beyond - 1) * R, BESIDE * R, how.growth)[1:]
         depths = grid.graded(0.0, min(length, BESIDE * R), how.beyond * R, growth=how.growth)
         return with_contact_to(tensor_grid(np.concatenate([lines, R + past]), depths), R)
@@ -100,11 +100,14 @@ class Block(Body):
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
         """Block as large as the lines, which are in contact radii where it goes on beyond them."""
-        return _as_deep_as_wide(lines, how, np.inf if self.endless else length)
+        return _as_deep_as_wide(lines, _shortest(lines) if self.endless else length, how)
 
 
-def _as_deep_as_wide(lines: Array, how: Discretisation, length: float = np.inf) -> Any:
+def _shortest(lines: Array) -> float:
+    return float(np.diff(lines).min())
+
+
+def _as_deep_as_wide(lines: Array, finest: float, how: Discretisation) -> Any:
     from fem_adhesion.mesh.block import tensor_grid
 
-    shortest = np.diff(lines).min() if np.isinf(length) else length
-    return tensor_grid(lines, grid.graded(0.0, shortest, float(lines[-1]), growth=how.growth))
+    return tensor_grid(lines, grid.graded(0.0, finest, float(lines[-1]), growth=how.growth))

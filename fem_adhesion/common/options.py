@@ -179,7 +179,7 @@ def add_workers(command: Parser) -> None:
     command.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
 
 
-TABLES = {"csv", "stress"}  # outputs that are tables
+TABLES = ("csv", "stress")  # outputs that are tables
 
 
 def require_distinct(*paths: Path | None) -> None:
@@ -201,7 +201,7 @@ def all_written(**paths: Path | None) -> Iterator[dict[str, TextIO]]:
     """
     require_distinct(*paths.values())
     given = {name: path for name, path in paths.items() if path}
-    if tables := {name: given[name] for name in given.keys() & TABLES if given[name] != STANDARD}:
+    if tables := {name: given[name] for name in TABLES if given.get(name, STANDARD) != STANDARD}:
         from fem_adhesion.common.record import beside
 
         given |= {f"{name} record": beside(table) for name, table in tables.items()}

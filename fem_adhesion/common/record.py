@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -68,11 +68,14 @@ def write_beside(file: TextIO, table: str, head: Mapping[str, Any]) -> None:
     json.dump({"@context": "http://www.w3.org/ns/csvw", "url": table, **head}, file, indent=1, allow_nan=False)
 
 
-def write_records(files: Mapping[str, TextIO], head: Mapping[str, Any], **tables: Path | None) -> None:
-    """Write the record of each table that has a file for it, see `fem_adhesion.common.options.all_written`."""
+def write_records(files: Mapping[str, TextIO], head: Callable[[], Mapping[str, Any]], **tables: Path | None) -> None:
+    """Write the record of each table that has a file for it, see `fem_adhesion.common.options.all_written`.
+
+    The head is made if there is one: to ask for the versions takes a tenth of a second.
+    """
     for name, table in tables.items():
         if table and (file := files.get(f"{name} record")):
-            write_beside(file, table.name, head)
+            write_beside(file, table.name, head())
 
 
 def lines_of(table: Path, remedy: str = "run its command again") -> list[list[str]]:

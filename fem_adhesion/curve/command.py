@@ -130,9 +130,9 @@ def _write(
         json.dump(record.record(curves) | told, files["json"], indent=1, allow_nan=False)
     if "csv" in files:
         record.write_csv(curves, files["csv"])
-    head = record.head(curves)
-    write_records(files, head, csv=options.csv)
-    write_records(files, head | {"units": {}}, stress=options.stress and Path(options.stress[1]))
+    stress_table = options.stress and Path(options.stress[1])
+    write_records(files, lambda: record.head(curves), csv=options.csv)
+    write_records(files, lambda: record.head(curves) | {"units": {}}, stress=stress_table)
     if "plot" in files:
         from fem_adhesion.common import style
         from fem_adhesion.curve import figure

@@ -110,7 +110,7 @@ def run(options: argparse.Namespace) -> int:
         head = record(None, {}, **{"curves": options.curves, **reading, **given})
         if "csv" in files:
             folder.write_csv(rows, files["csv"])
-        write_records(files, head, csv=options.csv)
+        write_records(files, lambda: head, csv=options.csv)
         if "json" in files:
             json.dump({**head, **content}, files["json"], indent=1, allow_nan=False)
         if "plot" in files:

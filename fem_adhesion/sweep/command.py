@@ -92,7 +92,7 @@ def run(options: argparse.Namespace) -> int:
         found = known | dict(zip(todo, traced, strict=True))
         curves = [found[tabor] for tabor in tabors]
         study.write_csv(curves, files["csv"], known)
-        write_records(files, record(tabor=tabors, **asked), csv=options.csv)
+        write_records(files, lambda: record(tabor=tabors, **asked), csv=options.csv)
     failed = [curve for curve in curves if curve.reason]
     out = sys.stderr if options.csv == STANDARD else sys.stdout
     solved = [curve for curve in curves if not curve.reason]
