@@ -106,17 +106,19 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """
     (above, size), (below, _) = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
     block, given = partial(discretised_block, scene, to_load), scene.body.cut_off
+    settings = {name: getattr(above, name) for name in ("degree", "finest", "growth")} | {"radius": size}
     curve, *stages = block(above, size)
     if not scene.body.endless:  # traced on the whole, which carries contacts that a smaller one does not
-        curve, _ = block(Discretisation(CURVE_DEGREE + level), given or size)
+        how, whole = Discretisation(CURVE_DEGREE + level), given or size
+        curve, _ = block(how, whole)
+        settings |= {"curve_degree": how.degree, "curve_radius": whole}
     if level:
         # Where both sizes are small a number may be alike on them by accident, which a third, between them, tells.
         sizes = (size / math.sqrt(_larger(scene)), size) if given else (size,)
         stages = [*(block(below, each)[1] for each in sizes), *stages]
-    settings = {name: getattr(above, name) for name in ("degree", "finest", "growth")}
     # What a clamp and what the attraction beyond it change may cancel: with 1 approaches were up to 1.5 times outside.
     rule = ErrorRule(1.0 if scene.body.endless else 2.0)
-    return Rung(curve, tuple(stages), settings | {"radius": size}, rule=rule)
+    return Rung(curve, tuple(stages), settings, rule=rule)
 
 
 def resolution_for(scene: Scene, rtol: float, level: int) -> tuple[Discretisation, float]:
