@@ -12,6 +12,7 @@ import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import (
+    CURVE_DEGREE,
     FAR_FIELDS,
     finest_length,
     layout_of,
@@ -43,7 +44,6 @@ from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged,
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array, Valued
 
-LINEAR_DEGREE = 3  # of the elements for the linear body's curve, whose events are starts: within 2e-3 of their places
 WIDEST_TABOR = 3.0  # limit of the Tabor parameter for a whole curve: its points grow as the square
 TIGHTEST = 1e-6  # limit of the relative tolerance
 LITTLE = 0.5  # R dgamma: a load past every event
@@ -252,7 +252,7 @@ def raised(event: Located, problem: FiniteStrainProblem) -> Located | Unsolved:
 def linear_charts(scene: Scene, to_load: float) -> tuple[Chart, Chart]:
     """Charts for the curve of the linear body."""
     linear = scene.made_of(LinearElastic(scene.poisson))
-    return sized_body(linear, Discretisation(LINEAR_DEGREE), to_load).curve()
+    return sized_body(linear, Discretisation(CURVE_DEGREE), to_load).curve()
 
 
 def nearly_linear(scene: Scene, to_load: float, settings: Settings) -> bool:

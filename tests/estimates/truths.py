@@ -38,8 +38,8 @@ LEFT = 1e-9  # R dgamma or eps
 def half_space_of(scene):
     """Two grids of other gradings and extents than any that `halfspace.trace` takes; the nodes are nearly the most."""
     return [
-        Charted(half_space_charts(scene.scales, Resolution(nodes, finest, growth, 10 * scene.scales.widened)))
-        for nodes, finest, growth in ((14, 0.45, 2.2), (16, 0.4, 2.5))
+        Charted(half_space_charts(scene.scales, Resolution(nodes, finest, growth, extent * scene.scales.widened)))
+        for nodes, finest, growth, extent in ((14, 0.45, 2.2, 10.0), (16, 0.4, 2.5, 100.0))
     ]
 
 
