@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from halfspace.accuracy.stages import Charted, FoldsLost, Rung, State, on_all
-from halfspace.equilibrium.charts import COMPRESSION, Stage, trace_charts
+from halfspace.equilibrium.charts import COMPRESSION, trace_charts
 from halfspace.equilibrium.conditions import FOLD, STEEPEST, Located
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -80,9 +80,8 @@ def _climb_from(
     below, higher, margin = ascent.below, ascent.higher, _margin(ascent.chains, ascent.higher)
     if folds and margin and margin.value + margin.error < 0 and "jump_on" not in ascent.events:
         raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
-    before = (*lowest.stages, *(() if below is lowest else below.stages[-1:]))
     jumps = [ascent.state[name] for name in FOLDS if name in ascent.state]
-    further, lost = further_folds(segments if folds else (), jumps, before, higher)
+    further, lost = further_folds(segments if folds else (), jumps, below, higher)
     lost += [] if folds else [found[name].point for name in FOLDS if name in found]
     chains = _in_order(ascent.chains, further)
     lowest_stage = below.stages[-1] if below.stages else Charted(tuple(charts))
@@ -108,19 +107,18 @@ def _in_order(known: Mapping[str, T], further: Mapping[str, T]) -> dict[str, T]:
 
 
 def further_folds(
-    segments: Sequence[Segment], jumps: Sequence[Located], before: Sequence[Stage], last: Rung
+    segments: Sequence[Segment], jumps: Sequence[Located], below: Rung, last: Rung
 ) -> tuple[dict[str, Chains], list[Point]]:
     """Folds between the jumps by name, and about where the curve has others that no finer grid has.
 
-    The segments are the curve as it was traced, the jumps the outermost folds, on the finest discretisation. On each of
-    the stages `before` a fold is solved for on the way to the last rung; where one does not have it, a later one may:
-    its change is then from farther back.
+    The segments are the curve as it was traced, the jumps the outermost folds, on the finest discretisation. A fold is
+    solved for on the rung below the last on the way to that; where the one does not have it, the other may: its change
+    is then from farther back.
     """
 
     def solve(fold: Located) -> Chains | Unsolved:
-        for stage in before:
-            fold = met_again(stage, fold) or fold
-        return last.chains_of(fold)
+        before = met_again(below.stages[-1], fold) if below.stages else fold
+        return last.chains_of(before or fold)
 
     kept, lost = confirmed(turns(segments, FOLD, slice(1, -1)) if segments else [], solve, jumps)
     return numbered(kept), lost
