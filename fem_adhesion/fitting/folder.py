@@ -28,7 +28,7 @@ from fem_adhesion.common.numbers import counted
 from fem_adhesion.common.record import column
 from fem_adhesion.common.terminal import Column, Fitted, Prose
 from fem_adhesion.fitting import makers, terminal
-from fem_adhesion.fitting.inference import NORMAL
+from fem_adhesion.fitting.likelihood import NORMAL
 from fem_adhesion.fitting.measured import count, read
 from fem_adhesion.fitting.study import UNITS, Value, fit
 from fem_adhesion.fitting.words import interval, sized

@@ -14,30 +14,19 @@ from scipy.stats import chi2, norm
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.common.scene_options import ATOM
-from fem_adhesion.fitting.inference import (
-    MEAN_PULL_OFF,
-    NORMAL,
-    SCALES,
-    Best,
-    Data,
-    Place,
-    Problem,
-    Profile,
-    Run,
-    profiled,
-)
+from fem_adhesion.fitting.data import Data, Place, Run
+from fem_adhesion.fitting.likelihood import MEAN_PULL_OFF, NORMAL, SCALES, Best, Problem
 from fem_adhesion.fitting.measured import APPROACH, BASE, ForceCurve, read
 from fem_adhesion.fitting.model import SOFTEST, STIFFEST, THEORIES, Apparatus, Other, Theory, by_atlas, by_jkr
 from fem_adhesion.fitting.prepare import Prepared, prepare
+from fem_adhesion.fitting.profile import Profile, profiled
 from fem_adhesion.fitting.traced import Traced
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.errors import InputError, Unsolved, tried
 from halfspace.limits import require_poisson
 from halfspace.values import Array
 
-TABORS = tuple(
-    np.geomspace(STIFFEST, SOFTEST, 17)
-)  # from which fits start; steps of 10 missed minima of 8 of 200 curves
+TABORS = tuple(np.geomspace(STIFFEST, SOFTEST, 17))  # of first fits; by steps of 10 8 of 200 curves lost their minimum
 TRACED = STIFFEST, 100.0  # least and largest Tabor parameter to which traced models are followed
 STRAYED = 5.0  # standard errors from what was known at which a quantity makes up for a wrong model, and is held
 CLEAR = 6.0  # difference of Akaike's criterion from which one model is clearly preferred: a likelihood ratio of 20
@@ -53,10 +42,7 @@ UNITS: Mapping[str, str] = {
     "compliance": "m/N",
 }
 """Parameters and their units in SI."""
-LIMITS = {
-    "sensitivity": (0.1, 10.0),
-    "radius": (ATOM, math.inf),
-}  # beyond, a wrong unit is likelier; others are positive
+LIMITS = {"sensitivity": (0.1, 10.0), "radius": (ATOM, math.inf)}  # beyond, a wrong unit is likelier
 MEDIAN = float(norm.isf(0.25))  # size of a normal error, in its standard deviation
 WHITE = 1e-3  # chance below which residuals are no noise
 

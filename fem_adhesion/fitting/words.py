@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from fem_adhesion.common.numbers import counted, engineering, listed
-from fem_adhesion.fitting.inference import inverse
+from fem_adhesion.fitting.likelihood import inverse
 from fem_adhesion.fitting.study import ATLAS, CLEAR, STRAYED, Fit, Value
 from halfspace.atlas import sphere
 
