@@ -12,13 +12,7 @@ from typing import Any
 import numpy as np
 
 from fem_adhesion.bodies.body import MOST_RINGS, Discretisation
-from fem_adhesion.discretise import (
-    CURVE_DEGREE,
-    Discretised,
-    discretise,
-    size_for,
-    sized_body,
-)
+from fem_adhesion.discretise import CURVE_DEGREE, Discretised, discretise, size_for, sized_body
 from fem_adhesion.elasticity.elimination import DISSECTED
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene

@@ -162,12 +162,7 @@ def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", 
 
 
 def states_along(
-    scene: Scene,
-    path: EquilibriumPath,
-    *,
-    points: int | None = None,
-    events: bool = True,
-    how: Discretisation = FIELDS,
+    scene: Scene, path: EquilibriumPath, *, points: int | None = None, events: bool = True, how: Discretisation = FIELDS
 ) -> Iterator[State]:
     """Solve for states of a traced curve one by one, in order of their arclength.
 

@@ -56,9 +56,8 @@ def run(options: argparse.Namespace) -> int:
             json.dump(terminal.record(assessment), files["json"], indent=1, allow_nan=False)
         if "plot" in files:
             style.write(lambda: figure.draw(assessment), files["plot"], form)
-        report = terminal.report(
-            assessment, DIGITS if options.digits == "all" else terminal.SHOWN
-        )  # before the files take their places
+        digits = DIGITS if options.digits == "all" else terminal.SHOWN
+        report = terminal.report(assessment, digits)  # before the files take their places
     console_beside(options.json).print(report)
     return AGREE
 

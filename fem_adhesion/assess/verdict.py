@@ -101,9 +101,7 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
         pressed, h = _over(wide, R) ** 2 * R, contact.thickness
         if not contact.profile:
             judged.append(("indentation over thickness", pressed / h, USUAL.strain, "finite strain matters"))
-        judged += [
-            ("spacing over thickness", units.spacing / h, USUAL.spacing, "its base attracts through the sample"),
-        ]
+        judged += [("spacing over thickness", units.spacing / h, USUAL.spacing, "its base attracts through the sample")]
     for what, value, limit, meaning in judged:
         if value > limit:
             yield f"{what} is {value:.2g}, limit {limit:g}: {meaning}"

@@ -23,10 +23,7 @@ class Settings:
     share: float = 4.0  # triangles get this part of the budget, inverse: with 1 they and the elements miss it together
     finest: float = 1e-4  # cells of operators at an edge, under which the deflection has a vertical tangent
     fine: float = 0.02  # cells of operators where pressures have no edge, in the radius of these
-    harmonic: tuple[tuple[int, int], ...] = (
-        (9, 2000),
-        (11, 2600),
-    )  # nodes of cells, and harmonics: they show the spike
+    harmonic: tuple[tuple[int, int], ...] = ((9, 2000), (11, 2600))  # nodes of cells, harmonics: they show the spike
 
     # Definitions: laws, profiles and lengths
     defined: float = 1e-3  # budget of each number

@@ -176,9 +176,8 @@ def _given_mesh(scene: Scene) -> Any:
 def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) -> Contact:
     """Contact of one body or two, whose cells are finest at a radius."""
     R, bodies = lengths(scene)
-    R = (
-        bodies[0] if np.isfinite(bodies[0]) else min(R, scene.surface.end)
-    )  # the first body's, or where what attracts ends
+    # The first body's, or where what attracts ends.
+    R = bodies[0] if np.isfinite(bodies[0]) else min(R, scene.surface.end)
     radius, reach = (min(r, USUAL.widest * R) for r in (radius, reach))  # what attracts from afar may be wider
     how = Discretisation(
         degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, USUAL.growth, USUAL.rings

@@ -51,10 +51,7 @@ def add_options(command: Parser) -> None:
     body.add_argument("--to-load", type=float, default=5.0, help="load in R dgamma at which it ends", metavar="W")
     results = command.add_argument_group("results")
     add_files(
-        results,
-        json="points, events, units and settings",
-        csv="points and events",
-        plot="curve, profiles and mesh",
+        results, json="points, events, units and settings", csv="points and events", plot="curve, profiles and mesh"
     )
     points = f"in JSON, CSV and plot, as traced unless given; in DIR beside the events, {USUAL.inside} unless given"
     for name, metavar, kind, text in (

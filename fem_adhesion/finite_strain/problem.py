@@ -318,12 +318,7 @@ def finite_strain_problem(
 
 
 def assemble(
-    space: Space,
-    poisson: float,
-    tabor: float,
-    *,
-    far_field: FarField = point_load,
-    points: int | None = None,
+    space: Space, poisson: float, tabor: float, *, far_field: FarField = point_load, points: int | None = None
 ) -> FiniteStrainProblem:
     """Contact problem of a linear block under a rigid paraboloid, none of its unknowns condensed but in the solver.
 

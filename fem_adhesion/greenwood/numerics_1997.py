@@ -76,9 +76,8 @@ def ripple(
     prescribed, which goes on falling where approach and load ripple: from a window in beta above that at pull-off to as
     far below, in a number of steps to a spacing. NotConverged if the coarse grid has no state near the resolved one.
     """
-    problem = ContactProblem(
-        body(grid.uniform(EXTENT, spacing)), path.tabor
-    )  # too coarse, which no one asks of it here
+    operator = body(grid.uniform(EXTENT, spacing))
+    problem = ContactProblem(operator, path.tabor)  # too coarse, which no one asks of it here
     centre = path.events["pull_off"].contact_radius
     radii = np.arange(centre + window, centre - window, -spacing / steps)
     resolved = path.segments[-1]

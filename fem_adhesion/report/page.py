@@ -74,10 +74,7 @@ def page(contents: Contents) -> str:
         walk_words=walk_words(walked) if walked else (),
         has_unstable=any((smooth(path).kind == UNSTABLE).any() for path in paths),
         levels=crosscheck_section(cases),
-        others=[
-            *(section_of(name, contents.directories.get(name)) for name in SOURCES),
-            fit_section(contents.fit),
-        ],
+        others=[*(section_of(name, contents.directories.get(name)) for name in SOURCES), fit_section(contents.fit)],
         settings=settings_section(cases, machine()),
         script=template_text("report", "walk.js"),
     )

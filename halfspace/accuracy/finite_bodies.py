@@ -17,15 +17,7 @@ import numpy as np
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.grid import SurfaceCoordinate
-from halfspace.elastic.operators import (
-    ROOM,
-    Interpolated,
-    MovingGrid,
-    Part,
-    Piecewise,
-    chebyshev_lengths,
-    kernels_of,
-)
+from halfspace.elastic.operators import ROOM, Interpolated, MovingGrid, Part, Piecewise, chebyshev_lengths, kernels_of
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import WIDEST, contact_of, require_narrow
 from halfspace.errors import GridTooLarge

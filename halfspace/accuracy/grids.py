@@ -33,11 +33,7 @@ class GridSettings:
     tip: float = 1.5  # times as fast as elsewhere; with 2 or 3 two of 427 numbers were outside their estimates
     before: float = 0.2  # of the change before the last, what may be left: an error was 2.45 estimates without it
     most_widths: int = 60  # of a spike of tension that are resolved at once
-    twin: tuple[float, ...] = (
-        0.75,
-        0.87,
-        0.8,
-    )  # finest cells, growth and extent, in its sibling's: no cell is the same
+    twin: tuple[float, ...] = (0.75, 0.87, 0.8)  # finest cells, growth, extent, in its sibling's: no cell is the same
 
 
 GRIDS = GridSettings()
@@ -148,11 +144,7 @@ def endless(nodes: int, reach: float, breaks: Array) -> compliance.ElasticOperat
 
 
 def half_space_charts(
-    scales: Scales,
-    resolution: Resolution,
-    *,
-    to_load: float = COMPRESSION,
-    make: MakeOperator = endless,
+    scales: Scales, resolution: Resolution, *, to_load: float = COMPRESSION, make: MakeOperator = endless
 ) -> tuple[Chart, ...]:
     """Charts of the half-space: centred on the axis and, unless that is fine throughout, following the contact edge."""
     lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, resolution.nodes)

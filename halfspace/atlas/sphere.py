@@ -27,11 +27,7 @@ from halfspace.values import Array, States, Valued
 
 TABORS = (0.05, 10.0)
 RATIOS = (5.0, 22.5, 150.0, 1e5)  # ends of the pieces of R/eps; below 22.5 the largest tabor has no sphere of 1.5 beta
-FITTED = (
-    (5.0, 22.5),
-    (22.5, 260.0),
-    (90.0, 1e5),
-)  # where the polynomials of each piece are fitted: beyond it if they may
+FITTED = ((5.0, 22.5), (22.5, 260.0), (90.0, 1e5))  # ends of R/eps for each piece's polynomials: beyond it if they may
 POISSON = (0.0, 0.49)
 DEGREES = {
     "pull_off": ((8, 20, 6), (3, 12, 2)),

@@ -48,10 +48,7 @@ class ImageSettings:
     shallowest: float = 1.0  # thicknesses of the first stratum at which the first image is
     deepest: float = 60.0  # thicknesses of all strata at which the last image is
     deeper: tuple[float, ...] = (1.0, 10.0, 100.0, 1e3)  # times as deep they go if need be: stiff strata spread a load
-    spacings: tuple[float, float] = (
-        1.14,
-        1.1,
-    )  # ratio of neighbouring depths, and a twin's: with 1.2 the fit is a decade worse
+    spacings: tuple[float, float] = (1.14, 1.1)  # of depths, a ratio, and a twin's: by 1.2 the fit is a decade worse
     close: float = 0.14  # most logarithm of the ratio of lengths between which images are interpolated
     wide: float = 3.5  # most logarithm of the ratio of contact radii between which a remainder is one polynomial
     wider: float = 10.0  # times the widest contact that is planned for, up to which remainders are known
@@ -59,10 +56,7 @@ class ImageSettings:
     fitted: float = 3e-8  # misfit at which no deeper images are tried
     at_worst: float = 1e-6  # misfit at which strata are refused
     near: float = 0.5  # lengths of a long cell around it where nodes need a rule of their own
-    adjacent: tuple[int, int] = (
-        48,
-        2,
-    )  # points and grading of the rule next to a long cell; 24 leave 5e-6 on 0.01 beta
+    adjacent: tuple[int, int] = (48, 2)  # points, grading of a rule next to a long cell: 24 leave 5e-6 on 0.01 beta
     apart: float = 0.3  # lengths of a long cell from which Gauss's rule leaves 5e-11 of a kernel
     apart_points: int = 14  # points of that rule
     at_once: int = 10**6  # numbers that are integrated at once

@@ -17,14 +17,7 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.conditions import Located, relocate, same_place
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
-from halfspace.equilibrium.path import (
-    Metric,
-    Point,
-    Segment,
-    Steps,
-    follow,
-    solved_point,
-)
+from halfspace.equilibrium.path import Metric, Point, Segment, Steps, follow, solved_point
 from halfspace.errors import Unsolved, required
 from halfspace.values import Array, Valued
 
@@ -79,9 +72,7 @@ def metric_for(problem: Traceable) -> Metric:
 
 
 def trace_charts(
-    charts: Iterable[Chart],
-    to_load: float = COMPRESSION,
-    steps: Steps | None = None,
+    charts: Iterable[Chart], to_load: float = COMPRESSION, steps: Steps | None = None
 ) -> tuple[Segment, ...]:
     """Trace the curve from far separation to a compressive load over the charts in order, as many as it takes.
 

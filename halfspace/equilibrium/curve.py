@@ -13,15 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from halfspace.equilibrium.charts import Stage, metric_for
 from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
-from halfspace.equilibrium.events import (
-    Event,
-    Unconfirmed,
-    WithEvents,
-    is_fold,
-    points_of,
-    tolerance_told,
-    usual,
-)
+from halfspace.equilibrium.events import Event, Unconfirmed, WithEvents, is_fold, points_of, tolerance_told, usual
 from halfspace.equilibrium.path import Metric, Point, Segment
 from halfspace.equilibrium.search import states
 from halfspace.equilibrium.states import FinestCurve, Ladder, finest_curve, require_coordinate, resampled

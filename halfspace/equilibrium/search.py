@@ -163,9 +163,7 @@ def turns(segments: Sequence[Segment], condition: Condition, inner: slice = slic
 
 
 def confirmed(
-    traced: Sequence[Turn],
-    solve: Callable[[Located], Chains | Unsolved],
-    known: Sequence[Located] = (),
+    traced: Sequence[Turn], solve: Callable[[Located], Chains | Unsolved], known: Sequence[Located] = ()
 ) -> tuple[list[Chains], list[Point]]:
     """Turns of a curve that every discretisation has, on each of these, and about where the rest are.
 

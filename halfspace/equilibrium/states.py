@@ -270,10 +270,7 @@ class FinestCurve(Valued):
     def _bridges(self, before: Segment, after: Segment) -> Iterator[tuple[Traceable, Point, Point]]:
         """Last point on one discretisation and first on the next, both on either of these that has them."""
         last, first = before.points[-1], after.points[0]
-        for problem, other, point in (
-            (before.problem, after.problem, first),
-            (after.problem, before.problem, last),
-        ):
+        for problem, other, point in ((before.problem, after.problem, first), (after.problem, before.problem, last)):
             if problem.interface.follows_contact and np.isnan(point.observables[CONTACT_RADIUS]):
                 continue
             there = same_place(point, problem, transfer(other, point.x, problem), self.metric)

@@ -4,14 +4,7 @@ import numpy as np
 import pytest
 from facets import boundary_basis
 from scipy.spatial.distance import cdist
-from skfem import (
-    Basis,
-    BilinearForm,
-    ElementQuadP,
-    ElementTriP2,
-    ElementTriP3,
-    ElementVector,
-)
+from skfem import Basis, BilinearForm, ElementQuadP, ElementTriP2, ElementTriP3, ElementVector
 from skfem.helpers import ddot, div, sym_grad
 
 from fem_adhesion.elasticity.cells import Cells, cell_quadrature, cell_stiffness, elastic_matrix
@@ -68,10 +61,7 @@ def axisymmetric_elasticity(u, v, w):
 
 @pytest.mark.parametrize(
     ("mesh", "element"),
-    [
-        (quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP3()),
-        (block_grid(0.7, 1.4, 5.0), ElementQuadP(3)),
-    ],
+    [(quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP3()), (block_grid(0.7, 1.4, 5.0), ElementQuadP(3))],
     ids=["P3", "Q3"],
 )
 def test_stiffness_equals_scikit_fems_assembly(mesh, element):

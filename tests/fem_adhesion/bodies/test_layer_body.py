@@ -60,10 +60,7 @@ def traced(scene, rtol):
         # Where a grid that stands still turned pull-off, that of the next rung did by less, and it erred by more.
         (Scene(9.15, Layer(50.7, "sliding", poisson=0.0), RoundedPunch(0.399)), 0.062),
         # On a flat tip the load turns so sharply that the path went back where it had come from, and was lost.
-        (
-            Scene(0.0722, Coated(13.1, 0.0855, 0.43, poisson=0.01), Power(4.54), law=PowerLaw(5.49, 10.27)),
-            1e-2,
-        ),
+        (Scene(0.0722, Coated(13.1, 0.0855, 0.43, poisson=0.01), Power(4.54), law=PowerLaw(5.49, 10.27)), 1e-2),
     ],
     ids=str,
 )
@@ -236,12 +233,7 @@ def test_compare_agrees_on_the_command_line(tmp_path):
 
 @pytest.mark.usefixtures("two_solvers")
 @pytest.mark.parametrize(
-    ("asked", "wrong"),
-    [
-        (STIFF, {"thickness": 2.1}),
-        (STIFF, {"substrate_poisson": 0.35}),
-    ],
-    ids=str,
+    ("asked", "wrong"), [(STIFF, {"thickness": 2.1}), (STIFF, {"substrate_poisson": 0.35})], ids=str
 )
 def test_compare_rejects_another_body(asked, wrong):
     """The integral equation is asked for other layers than the elements, whose curve is that of the right ones."""

@@ -37,11 +37,7 @@ from fem_adhesion.finite_sphere.chart import materials
 from fem_adhesion.finite_sphere.fit import leading_terms
 from fem_adhesion.finite_sphere.page import all_tables
 from fem_adhesion.finite_sphere.study import TABORS, Study, plan, run
-from fem_adhesion.finite_sphere.table import (
-    DeviationRow,
-    Samples,
-    rows,
-)
+from fem_adhesion.finite_sphere.table import DeviationRow, Samples, rows
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 from halfspace.profiles import Paraboloid, Sphere

@@ -114,11 +114,7 @@ def test_what_loads_slowly_is_loaded_if_needed(code, unneeded):
 
 @pytest.mark.parametrize(
     ("tabor", "law", "points", "factorisations"),
-    [
-        (1, LENNARD_JONES, 35, 155),
-        (300, LENNARD_JONES, 95, 400),
-        (1, Dugdale(0.1), 55, 265),
-    ],
+    [(1, LENNARD_JONES, 35, 155), (300, LENNARD_JONES, 95, 400), (1, Dugdale(0.1), 55, 265)],
 )
 def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, points, factorisations):
     """A fold is found in four or five, a state in three or four: the tangent uses the factors at hand."""

@@ -48,10 +48,7 @@ REFUSED = [
     (body(grip="glued"), "grip = 'glued' is not one of sliding, bonded"),
     (lambda: Scene(1.0, Meshed("any.msh", radius_ratio=30.0), Sphere(30.0)), "does not go with meshed"),
     (lambda: LinearElastic(traction="normal"), "traction = 'normal' is not one of projected, surface"),
-    (
-        lambda: NeoHookean(traction="surface"),
-        "traction = 'surface' is not one of projected, reference",
-    ),
+    (lambda: NeoHookean(traction="surface"), "traction = 'surface' is not one of projected, reference"),
     (lambda: Block(radius=50.0, far_field="hinged"), "far_field = 'hinged' is not one of point_load, clamped, free"),
     (body(radius_ratio=None), "radius_ratio = None of type NoneType, limit: a real number"),
     (body(radius_ratio=1.9), "radius_ratio = 1.9 is outside 2 <= radius_ratio"),

@@ -35,9 +35,7 @@ def test_events_are_right_within_their_estimates_and_as_accurate_as_asked(tabor,
 
 
 @pytest.mark.parametrize(
-    ("law", "profile", "kernel"),
-    [(Morse(3.0), Power(4), "bands"), (Dugdale(0.1), PARABOLOID, "triangles")],
-    ids=str,
+    ("law", "profile", "kernel"), [(Morse(3.0), Power(4), "bands"), (Dugdale(0.1), PARABOLOID, "triangles")], ids=str
 )
 def test_other_laws_and_profiles_are_served_by_the_same_grids(law, profile, kernel):
     truth = halfspace.trace(1.0, law=law, profile=profile, rtol=1e-8)

@@ -10,14 +10,7 @@ from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.grid import FLAT, SurfaceCoordinate
-from halfspace.elastic.operators import (
-    Interpolated,
-    MovingGrid,
-    Part,
-    Piecewise,
-    chebyshev_lengths,
-    kernels_of,
-)
+from halfspace.elastic.operators import Interpolated, MovingGrid, Part, Piecewise, chebyshev_lengths, kernels_of
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.profiles.formulas import SphereSurface
 

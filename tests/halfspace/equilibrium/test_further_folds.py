@@ -177,12 +177,7 @@ def test_a_curve_that_winds_more_has_all_its_folds():
 
 @pytest.mark.parametrize(
     ("tabor", "law", "rtol"),
-    [
-        (300.0, PowerLaw(3.427, 19.84), 1e-3),
-        (20.0, LENNARD_JONES, 1e-1),
-        (2.0, LAW, 1e-3),
-        (0.5, LENNARD_JONES, 1e-3),
-    ],
+    [(300.0, PowerLaw(3.427, 19.84), 1e-3), (20.0, LENNARD_JONES, 1e-1), (2.0, LAW, 1e-3), (0.5, LENNARD_JONES, 1e-3)],
     ids=str,
 )
 def test_branches_end_at_the_folds_that_are_events(tabor, law, rtol):

@@ -173,9 +173,7 @@ def by_elements(tabor, *, rtol, **parts):
 
 
 @pytest.mark.parametrize(
-    ("rtol", "solve"),
-    [(1e-6, halfspace.trace), (1e-5, by_elements)],
-    ids=["half-space", "elements"],
+    ("rtol", "solve"), [(1e-6, halfspace.trace), (1e-5, by_elements)], ids=["half-space", "elements"]
 )
 @pytest.mark.parametrize(("law", "profile"), sorted({(row["law"], row["profile"]) for row in REFERENCES}))
 def test_other_laws_and_profiles_hit_the_references(law, profile, solve, rtol):
@@ -207,11 +205,7 @@ def test_a_quadratic_power_is_a_paraboloid():
 
 @pytest.mark.parametrize(
     ("law", "profile"),
-    [
-        (Dlvo(0.3, 1.0), PARABOLOID),
-        (LENNARD_JONES, RoundedPunch(1)),
-        (PowerLaw(2.5, 9.5), Hyperboloid(0.3)),
-    ],
+    [(Dlvo(0.3, 1.0), PARABOLOID), (LENNARD_JONES, RoundedPunch(1)), (PowerLaw(2.5, 9.5), Hyperboloid(0.3))],
     ids=str,
 )
 def test_a_rigid_profile_adheres_with_the_integral_of_the_law(law, profile):
@@ -320,10 +314,7 @@ def test_a_profiles_slope_is_that_of_its_height(profile):
 
 @pytest.mark.parametrize(
     ("tabor", "parts"),
-    [
-        (1.0, {"law": Yukawa(), "profile": BLUNT}),
-        (0.3, {"law": Exponential(3), "profile": Hyperboloid(0.3)}),
-    ],
+    [(1.0, {"law": Yukawa(), "profile": BLUNT}), (0.3, {"law": Exponential(3), "profile": Hyperboloid(0.3)})],
     ids=["own", "exponential"],
 )
 def test_both_solvers_agree_on_any_law_and_profile(tabor, parts):
