@@ -15,6 +15,7 @@ from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.conditions import ROUND_OFF, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, OBSERVABLES
 from halfspace.errors import InputError, nearest
+from halfspace.laws.law import Law
 from halfspace.values import Array, Estimate
 
 T = TypeVar("T")
@@ -42,7 +43,8 @@ class Event:
     central_gap, central_gap_error : float
         H(0) in eps, zero at the equilibrium spacing.
     contact_radius, contact_radius_error : float
-        In beta, of the edge where the tension is largest, H = 3^(1/6) - 1 by the 3-9 law; nan if H(0) exceeds that.
+        In beta, of the edge where the tension is largest, H = 3^(1/6) - 1 by the 3-9 law; nan if H(0) exceeds that,
+        its error then infinite if that of H(0) leaves it open.
     """
 
     name: str
@@ -303,7 +305,13 @@ def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Array:
     errors = np.maximum(errors, rule.least * (OWN + sizes))
     if np.isnan(errors[CONTACT_RADIUS]):  # another discretisation has no contact
         errors[CONTACT_RADIUS] = sizes[CONTACT_RADIUS]
-    return np.asarray(errors)
+    return with_doubt(errors, best.point.observables, best.problem.interface.law)
+
+
+def with_doubt(errors: Array, observables: Array, law: Law) -> Array:
+    """Errors (4,), that of the contact radius infinite where there is none but the gap's leaves that open."""
+    doubt = np.isnan(observables[CONTACT_RADIUS]) and (observables - errors)[CENTRAL_GAP] < law.edge_gap
+    return np.where((np.arange(4) == CONTACT_RADIUS) & doubt, np.inf, errors)
 
 
 def _by_load(event: Located) -> Array:

@@ -34,7 +34,7 @@ from halfspace.equilibrium.conditions import (
     seen_from,
 )
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
-from halfspace.equilibrium.events import ErrorRule, errors_of
+from halfspace.equilibrium.events import ErrorRule, errors_of, with_doubt
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, solved_point
 from halfspace.equilibrium.search import Chains, confirmed, turns
@@ -238,7 +238,7 @@ class FinestCurve(Valued):
         if np.isfinite(errors[k]):
             errors = errors + np.abs(point.rates) * shift(errors[k], abs(point.rates[k]), bend)
         errors[k] = rounding(problem, point.x)[k]
-        return np.concatenate([point.observables, errors])
+        return np.concatenate([point.observables, with_doubt(errors, point.observables, problem.interface.law)])
 
     def _solved(self, k: int, value: float, parts: Sequence[Segment]) -> tuple[Traceable, Point, float]:
         """State on a branch where an observable has a value, and the observable's second derivative along the path."""

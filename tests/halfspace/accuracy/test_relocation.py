@@ -8,7 +8,7 @@ from agreement import differing
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Block, Layers, Scene
+from fem_adhesion import Block, Layers, LinearElastic, Scene
 from halfspace import Stratum
 from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.accuracy.stages import Rung
@@ -64,6 +64,18 @@ def test_a_held_block_has_the_jumps_of_a_half_space_within_its_errors(tabor, rad
     assert differing(found, true) == []
     lost, exact = (cycle(path).energy_lost for path in (found, true))
     assert abs(lost.value - exact.value) <= lost.error + exact.error
+
+
+def test_whether_there_is_a_contact_may_be_left_open():
+    """The contact radius was told to be none without an error; it is 0.0026 beta on a larger block's finer cells."""
+    block = Block(radius=82.6, far_field="clamped", material=LinearElastic(0.23))
+    path = fem_adhesion.trace(Scene(11.3, block), rtol=0.00547)
+    open_still, known = (
+        path.at(approach=at, branch=name) for at, name in ((-6.75183, "unstable 2"), (-20, "separated"))
+    )
+    assert open_still.central_gap > LENNARD_JONES.edge_gap > open_still.central_gap - open_still.central_gap_error
+    assert np.isnan([open_still.contact_radius, known.contact_radius, known.contact_radius_error]).all()
+    assert open_still.contact_radius_error == np.inf
 
 
 def test_the_pull_off_of_a_wide_contact_does_not_stay_where_its_grid_was_made():
@@ -188,6 +200,7 @@ def _chain(condition, rates, values, near_axis=((0.0,), (0.0,))):
         ripples=lambda _: np.zeros(2),
         sizes=lambda _: np.zeros(4),
         scales=Scales(1.0),
+        law=LENNARD_JONES,
         beside_axis=lambda _: np.zeros(1),
         near_axis=lambda number, _: np.array(near_axis[number]),
     )
