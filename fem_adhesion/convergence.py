@@ -17,7 +17,7 @@ from fem_adhesion.elasticity.elimination import DISSECTED
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy import stages as ladders
-from halfspace.accuracy.grids import GRIDS, rings
+from halfspace.accuracy.grids import GRIDS, Resolution, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung, charted
 from halfspace.accuracy.standing import Standing, left_between, sized, standing
@@ -147,7 +147,7 @@ def discretised_block(scene: Scene, to_load: float, how: Discretisation, size: f
 def block_charts(scene: Scene, how: Discretisation, radius: float, to_load: float = COMPRESSION) -> Charts:
     """Charts of the scene's block of a size in beta, continued by a half-space."""
     extent = np.sqrt(2 * scene.tabor * float(scene.surface.height(np.array(radius))))
-    lines = rings(scene.scales, how.finest, how.growth, extent, to_load, how.degree + 2)
+    lines = rings(scene.scales, Resolution(how.degree + 2, how.finest, how.growth, extent), to_load)
     centred = _to_infinity(scene, lines.centred, how)
     first = Chart(centred.problem, centred.unknowns, lines.until)
     if lines.edge is None:

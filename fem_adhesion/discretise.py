@@ -168,7 +168,7 @@ FIELDS_BEYOND = 10.0  # `Discretisation.beyond` for fields inside a half-space u
 
 def size_for(scales: Scales, rtol: float) -> float:
     """Size in beta of a block whose far field, that of a point load, leaves errors of rtol in the events."""
-    return scales.outer_radius((2.5 * min(rtol, 0.01) ** -0.25 * scales.widened) ** 2 / 2)
+    return scales.radius_at((2.5 * min(rtol, 0.01) ** -0.25 * scales.widened) ** 2 / 2)
 
 
 def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:

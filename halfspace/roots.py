@@ -9,7 +9,6 @@ from typing import Any
 
 from halfspace.errors import NotConverged, Unsolved, required
 
-EPSILON = sys.float_info.epsilon
 MOST_ITERATIONS = 100  # iterations of Brent's method, which halves its interval at worst every third
 
 
@@ -43,19 +42,18 @@ def rising_root(
 
     It is looked for from a start on, and what is sought as of `root`; NotConverged where it is beyond the farthest.
     """
+    sought, _, remedy = what.partition("; ")
     last = min(start, end)
     while function(last) < 0:
         if last >= end:
             return end
         if last > farthest:
-            sought, _, remedy = what.partition("; ")
             raise NotConverged(f"{sought} is beyond {farthest:g}; {remedy}")
         last = min(2 * last, end)
     first = last
     while function(first) > 0:
         first /= 2
         if first < 1 / farthest:
-            sought, _, remedy = what.partition("; ")
             raise NotConverged(f"{sought} is below {1 / farthest:g}; {remedy}")
     return root(function, first, last, what, xtol=1e-300, rtol=1e-15)
 
@@ -68,7 +66,7 @@ def _brent(
     what: str,
     remedy: str,
     xtol: float = 2e-12,
-    rtol: float = 4 * EPSILON,
+    rtol: float = 4 * sys.float_info.epsilon,
 ) -> float | Unsolved:
     """Brent's method (Algorithms for Minimization Without Derivatives, 1973, chapter 4) between two changed signs.
 

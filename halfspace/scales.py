@@ -220,10 +220,6 @@ class Scales:
         found = self.rigid_tension if self.tabor < 1 else -4 / 3 * jkr_least_load(self.profile)
         return max(found, self.how.least_load) if abs(math.log2(found / BRADLEY)) > 1 else BRADLEY
 
-    def outer_radius(self, height: float) -> float:
-        """Radius at which finite cells end: there the undeformed gap has opened by `height`."""
-        return self.radius_at(height)
-
     def tension_beyond(self, r: float) -> float:
         """Tension beyond a radius in beta, in R dgamma; 0 where the surface or the law ends.
 
@@ -236,8 +232,8 @@ class Scales:
         return 2 * math.pi * r**2 * tension / power
 
     def whole_radius(self, height: float) -> float:
-        """Radius at which cells end beyond which nothing acts: `outer_radius`, or farther if too much load is there."""
-        r, power = self.outer_radius(height), self.law.decay * self._growth - 2
+        """Radius at which cells end beyond which nothing acts: that of a height, or farther for the load beyond."""
+        r, power = self.radius_at(height), self.law.decay * self._growth - 2
         beyond = self.tension_beyond(r) / self.rigid_tension
         if not beyond:
             return r

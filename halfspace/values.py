@@ -83,7 +83,8 @@ class Valued:
 
     def __repr__(self) -> str:
         """Fields by name; arrays by their shape, long sequences by their length, parts by their class."""
-        return f"{type(self).__name__}({', '.join(f'{f.name}={shown(getattr(self, f.name))}' for f in _shown(self))})"
+        told = (f"{f.name}={shown(getattr(self, f.name))}" for f in _fields(self) if f.repr)
+        return f"{type(self).__name__}({', '.join(told)})"
 
     def __getstate__(self) -> dict[str, Any]:
         """Fields alone: what is cached is computed again."""
@@ -173,10 +174,6 @@ def _same_fields(a: Any, b: Any) -> bool:
 
 def _fields(value: Any) -> tuple[Field[Any], ...]:
     return fields(value)
-
-
-def _shown(value: Any) -> list[Field[Any]]:
-    return [field for field in _fields(value) if field.repr]
 
 
 def keep(part: object, **values: object) -> None:

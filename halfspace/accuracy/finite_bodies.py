@@ -90,11 +90,6 @@ class SizedBody(Valued):
         return self.scales.growth(self.growth)
 
     @property
-    def until(self) -> float:
-        """Contact radius in beta up to which the chart fine on the axis serves."""
-        return CHARTS.leave * self._reach
-
-    @property
     def leave(self) -> float:
         """Contact radius in beta from which on the other chart serves an event."""
         return CHARTS.events * self.length
@@ -114,8 +109,8 @@ class SizedBody(Valued):
         return np.concatenate([grid.towards_axis(lines, self.first, self._growth), self.outer[1:]])
 
     def centred(self) -> Chart:
-        """Chart fine on the axis."""
-        return replace(self.standing(0.0), until=self.until, leave=self.leave)
+        """Chart fine on the axis; of its equal cells the curve leaves a part, an event those beyond `leave`."""
+        return replace(self.standing(0.0), until=CHARTS.leave * self._reach, leave=self.leave)
 
     def standing(self, radius: float) -> Chart:
         """Chart that stands still, finest at a contact radius in beta, or on the axis."""

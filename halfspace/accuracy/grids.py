@@ -94,23 +94,13 @@ class Rings(Valued):
     until: float = math.inf
 
 
-def rings(
-    scales: Scales,
-    finest: float,
-    growth: float,
-    extent: float,
-    to_load: float = COMPRESSION,
-    nodes: int = GRIDS.most_nodes,
-) -> Rings:
-    """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`.
-
-    `finest` is in widths of the spike, `extent` in those of the attraction, as in `Resolution`.
-    """
-    outer = scales.outer_radius(extent**2 / 2)
+def rings(scales: Scales, how: Resolution, to_load: float = COMPRESSION) -> Rings:
+    """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`."""
+    outer, growth = scales.radius_at(how.extent**2 / 2), scales.growth(how.growth)
     if scales.law.outermost:
-        return Rings(_fine_throughout(scales, finest, scales.growth(growth), outer, to_load))
-    length, widest, first = scales.edge_cell(finest), scales.widest_radius(to_load), at_tip(scales.profile, nodes)
-    growth = scales.growth(growth)
+        return Rings(_fine_throughout(scales, how.finest, growth, outer, to_load))
+    length, widest = scales.edge_cell(how.finest), scales.widest_radius(to_load)
+    first = at_tip(scales.profile, how.nodes)
     towards = GRIDS.tip * growth if scales.profile.pointed else growth
     equal, leave = CHARTS.equal, CHARTS.leave
     reach = math.floor(equal * scales.flat) * length  # that carries a contact there at once
@@ -147,7 +137,7 @@ def half_space_charts(
     scales: Scales, resolution: Resolution, *, to_load: float = COMPRESSION, make: MakeOperator = endless
 ) -> tuple[Chart, ...]:
     """Charts of the half-space: centred on the axis and, unless that is fine throughout, following the contact edge."""
-    lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, resolution.nodes)
+    lines = rings(scales, resolution, to_load)
     centred = make(resolution.nodes, scales.tail_reach, lines.centred)
     leave = lines.until / CHARTS.leave  # the end of the equal cells
     first = Chart(contact_of(scales, centred), centred.radii.size, lines.until, leave)

@@ -57,7 +57,7 @@ def layered_charts(
     widest one: a sharp tip's is wider than that.
     """
     how = replace(resolution, extent=WIDER * resolution.extent)
-    outer = scales.outer_radius(how.extent**2 / 2)
+    outer = scales.radius_at(how.extent**2 / 2)
     first, *rest = half_space_charts(scales, how, to_load=to_load)
     operator = first.problem.interface.operator.at(1.0)
     leave = CHARTS.events * scales.edge_cell(how.finest)

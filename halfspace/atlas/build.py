@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from halfspace.accuracy.trace import trace
 from halfspace.atlas.series import EDGE, LEAST, MOST, Series, series_of
+from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import approach_scale
 from halfspace.roots import root
@@ -31,7 +32,6 @@ BIRTH_NODES = 12
 NEXT_BIRTH = 3.974  # Tabor parameter from which curves have a second pair of folds, near which more is checked
 CHECK_POINTS = 8
 
-QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 EVENTS = ("pull_off", "zero_load")
 OF_JUMPS = (
     *("take_off.approach", "take_off.load", "take_off.central_gap"),
@@ -58,7 +58,7 @@ def solved(tabor: float) -> dict[str, Estimate]:
             states |= {f"{name}.take_off": jump.take_off, f"{name}.landing": jump.landing}
             found[f"{name}.energy"] = jump.energy
     found |= {
-        f"{name}.{quantity}": state.estimate(quantity) for name, state in states.items() for quantity in QUANTITIES
+        f"{name}.{quantity}": state.estimate(quantity) for name, state in states.items() for quantity in OBSERVABLES
     }
     return {name: number for name, number in found.items() if not math.isnan(number.value)}
 
@@ -114,7 +114,7 @@ def digest() -> str:
 def built(node: Node, digest: str) -> Entry:
     """Content of the file of series, from the numbers at its nodes; Tabor parameters that are no nodes check it."""
     birth = birth_of_folds(node)
-    of_all = [f"{event}.{quantity}" for event in EVENTS for quantity in QUANTITIES]
+    of_all = [f"{event}.{quantity}" for event in EVENTS for quantity in OBSERVABLES]
     of_all.remove("zero_load.load")
     found = {name: whole(node, name) for name in ("energy_released", *of_all)}
     for jump, end in IN_CONTACT.items():

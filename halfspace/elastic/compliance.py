@@ -104,28 +104,18 @@ class SurfaceNodes(Valued):
         """Return the same blown up by a factor."""
         return replace(self, radii=self.radii * factor, weights=self.weights * factor**2, cells=self.cells * factor)
 
-    def with_compliance(self, compliance: Array) -> ElasticOperator:
-        """Return the operator of a body that has these nodes."""
-        of_these = self.radii, self.weights, self.cells, self.cell_nodes, self.coordinate
-        return ElasticOperator(*of_these, compliance=compliance)
-
     def cell_of(self, radius: float) -> int:
         """Index of the cell that holds `radius`."""
         return min(max(int(self.cells.searchsorted(radius, side="right")) - 1, 0), self.cells.size - 2)
 
-    def spacing(self, radius: float) -> float:
-        """Distance between neighbouring nodes around `radius`, in beta."""
-        cell = self.cell_of(radius)
-        return float((self.cells[cell + 1] - self.cells[cell]) / max(self.cell_nodes.shape[1] - 1, 1))
-
-    def interpolation(self, radius: float) -> tuple[Array, Array]:
-        """Row (q,) that interpolates nodal values at `radius`, and the row of its derivative by the radius."""
-        row, derivative = np.zeros((2, self.radii.size))
-        nodes, row[nodes], derivative[nodes] = self._lagrange(self.cell_of(radius), radius)
-        return row, derivative
+    def interpolation(self, radius: float) -> Array:
+        """Row (q,) that interpolates nodal values at `radius`."""
+        row = np.zeros(self.radii.size)
+        nodes, row[nodes], _ = self._lagrange(self.cell_of(radius), radius)
+        return row
 
     def continuous(self, radius: float) -> tuple[Array, Array]:
-        """Rows as of `interpolation`, but of a function that is continuous where two cells meet.
+        """Row as of `interpolation`, and its derivative by the radius, of a function continuous where two cells meet.
 
         Polynomials through nodes inside their cells leap there by their error; so between the last node of a cell and
         the first of the next, the one goes over into the other in proportion.

@@ -102,14 +102,6 @@ def _elliptic_b(k: Array) -> Array:
     return np.asarray(elliprf(zero, complement, one) - elliprd(zero, complement, one) / 3)
 
 
-@cache
-def graded_rule(points: int, q: int) -> tuple[Array, Array]:
-    """Points and weights on (0, 1) for integrands with a logarithm at, or just below, 0."""
-    x, w = gauss_legendre(points)
-    t = (1 + x) / 2
-    return t**q, w / 2 * q * t ** (q - 1)
-
-
 def require_room(nodes: int, integrals: int) -> None:
     """Raise GridTooLarge if so many integrals for each node of some grids take more memory than they may."""
     if (size := 8 * nodes * integrals) > RULES.largest:
@@ -133,7 +125,7 @@ def panel_integrals(targets: Array, breakpoints: Array, nodes: Array, ring: Ring
     shape, batches = pairs[0].shape, -(-pairs[0].size * _points(RULES.far[-1][1], nodes.size) // RULES.batch)
     some = zip(*(np.array_split(part.ravel(), batches) for part in pairs), strict=True)
     moments = np.concatenate([_moments(ring, r, left, right, nodes.size) for r, left, right in some])
-    return _of_lagrange(moments, nodes).reshape(*shape, nodes.size)
+    return of_lagrange(moments, nodes).reshape(*shape, nodes.size)
 
 
 def before_equator(targets: Array, lines: Array, nodes: Array, R: float) -> Array:
@@ -154,10 +146,10 @@ def before_equator(targets: Array, lines: Array, nodes: Array, R: float) -> Arra
     first = (off_moments(ring, targets, *ends, k, rule) for ends in ((left, targets), (targets, middle)))
     cut = np.tile((1 + nodes) / 2, targets.size // k)
     parts = [_of_a_part(*between, k) for between in pairwise([0 * cut, cut, (1 + cut) / 2, 1 + 0 * cut])]
-    return _of_lagrange(_of_parts([*first, last], parts), nodes).reshape(*shape, k)
+    return of_lagrange(_of_parts([*first, last], parts), nodes).reshape(*shape, k)
 
 
-def _of_lagrange(moments: Array, nodes: Array) -> Array:
+def of_lagrange(moments: Array, nodes: Array) -> Array:
     """Integrals against Lagrange's polynomials of some nodes from those against Legendre's, (n, k)."""
     return np.asarray(moments @ _to_lagrange(nodes.tobytes()))
 
@@ -186,8 +178,8 @@ def _points(least: int, nodes: int) -> int:
 def near_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[int, int]) -> Array:
     """Integrate a ring against the first k Legendre polynomials of a panel for each target, on the panel or off it.
 
-    A panel with the target r (n,) on it is cut in two there. The rule is as of `graded_rule`, from the target on, or
-    the end of the panel next to it. Return (..., n, k), with the leading axes that the ring's values have.
+    A panel with the target r (n,) on it is cut in two there. The rule is as of `_graded_polynomials`, from the target
+    on, or the end of the panel next to it. Return (..., n, k), with the leading axes that the ring's values have.
     """
     on = (left < r) & (r < right)
     off = off_moments(ring, r[~on], left[~on], right[~on], k, rule)
@@ -219,9 +211,14 @@ def off_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: t
 
 @cache
 def _graded_polynomials(points: int, q: int, k: int) -> tuple[Array, Array]:
-    """Points (n,) on (0, 1) of a graded rule, and its weights times the first k Legendre polynomials there, (n, k)."""
-    t, w = graded_rule(points, q)
-    return t, w[:, None] * legvander(2 * t - 1, k - 1)
+    """Points (n,) on (0, 1) of a graded rule, and its weights times the first k Legendre polynomials there, (n, k).
+
+    The rule is for integrands with a logarithm at, or just below, 0.
+    """
+    x, w = gauss_legendre(points)
+    t = (1 + x) / 2
+    places, weights = t**q, w / 2 * q * t ** (q - 1)
+    return places, weights[:, None] * legvander(2 * places - 1, k - 1)
 
 
 def _of_a_part(first: Array, last: Array, k: int) -> Array:

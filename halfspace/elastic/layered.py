@@ -22,16 +22,15 @@ from functools import partial
 from itertools import pairwise, product
 
 import numpy as np
-from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 from scipy.special import ellipkm1
 
 from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
 from halfspace.elastic.grid import gauss_legendre, polynomial
-from halfspace.elastic.kernel import near_moments
-from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
+from halfspace.elastic.kernel import near_moments, of_lagrange
+from halfspace.elastic.layers import LayeredBody, surface_compliance, total_thickness
 from halfspace.elastic.operators import NearlyHomogeneous, Part, Piecewise, chebyshev_lengths, nodes_beside
-from halfspace.errors import NotConverged
+from halfspace.errors import InputError, NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
 Complex = NDArray[np.complex128]
@@ -138,7 +137,8 @@ def images_of(body: LayeredBody, spacing: float = HOW.spacings[0]) -> Images:
     InputError if the body is not made of layers, NotConverged if the strata differ so much in stiffness or thickness
     that no images fit.
     """
-    body = require_layered(body)
+    if not isinstance(body, LayeredBody):
+        raise InputError(f"body = {body!r}, limit: layers on a base; give Layer, Coated or Layers, or leave it out")
     thin, all_of_it = body.strata[0].thickness, total_thickness(body)
     k = np.geomspace(1e-4 / all_of_it / HOW.deeper[-1], 30 / thin, HOW.samples)
     wanted = surface_compliance(body, k) - 1
@@ -233,12 +233,11 @@ def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, 
     for some in _blocks(i.size, images.depths.size):
         values[..., i[some], j[some]] = images.kernel(radii[i[some]], radii[j[some]]) / (2 * np.pi)
         values[..., j[some], i[some]] = values[..., i[some], j[some]]
-    at_nodes = np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
     for to, cell, rule in rules:
         for some in _blocks(to.size, images.depths.size * rule[0]):
             nodes = body.cell_nodes[cell[some]]
             moments = near_moments(images.ring, radii[to[some]], left[cell[some]], right[cell[some]], k, rule)
-            values[..., to[some, None], nodes] = moments @ at_nodes / body.weights[nodes]
+            values[..., to[some, None], nodes] = of_lagrange(moments, gauss_legendre(k)[0]) / body.weights[nodes]
     return values
 
 

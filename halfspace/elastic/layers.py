@@ -97,13 +97,6 @@ class LayeredBody(Protocol):
         ...
 
 
-def require_layered(body: LayeredBody) -> LayeredBody:
-    """Return the body, or raise InputError unless it is made of layers."""
-    if not isinstance(body, LayeredBody):
-        raise InputError(f"body = {body!r}, limit: layers on a base; give Layer, Coated or Layers, or leave it out")
-    return body
-
-
 @dataclass(frozen=True)
 class Layers:
     """Strata on a base: a graded or many-layered body; InputError unless the strata and the base are as below.

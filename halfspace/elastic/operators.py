@@ -41,7 +41,7 @@ class Homogeneous(Valued, Operator):
     @cached_property
     def edge_row(self) -> Array:
         """Row (q,) that interpolates nodal values at the contact edge, radius 1 of the unit."""
-        return self.unit.interpolation(1.0)[0]
+        return self.unit.interpolation(1.0)
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
@@ -153,19 +153,11 @@ class MovingGrid(Valued):
 
     def lines(self, contact_radius: float) -> Array:
         """Cell ends (m + 1,) at a contact radius in beta."""
-        return self.lines_at(np.array(self.edge(contact_radius)))
+        return self.lines_at(np.array(self.coordinate.of(contact_radius)))
 
     def lines_at(self, edges: Array) -> Array:
         """Cell ends (..., m + 1) at places of the edge (...), x_a."""
         return self.fixed + np.multiply.outer(edges, self.moving)
-
-    def edge(self, contact_radius: float) -> float:
-        """x_a."""
-        return self.coordinate.of(contact_radius)
-
-    def edge_rate(self, contact_radius: float) -> float:
-        """Derivative of x_a by the contact radius."""
-        return self.coordinate.rate(contact_radius)  # nan on the equator: a trial that ends there is refused for it
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -205,7 +197,7 @@ class Interpolated(Valued, Operator):
     @cached_property
     def edge_row(self) -> Array:
         """Row (q,) that interpolates nodal values at the contact edge."""
-        return self._first.interpolation(float(self.scales[0]))[0]
+        return self._first.interpolation(float(self.scales[0]))
 
     @cached_property
     def _first(self) -> SurfaceNodes:
@@ -222,14 +214,16 @@ class Interpolated(Valued, Operator):
         return STORE.get(self, "at", partial(self._made, scale), scale)
 
     def _made(self, scale: float) -> ElasticOperator:
-        nodes, kernel = self.nodes(scale), self.kernel.at(self.grid.edge(scale), 0)
-        return nodes.with_compliance(kernel * (nodes.weights / np.maximum.outer(nodes.radii, nodes.radii)))
+        nodes, kernel = self.nodes(scale), self.kernel.at(self.grid.coordinate.of(scale), 0)
+        compliance = kernel * (nodes.weights / np.maximum.outer(nodes.radii, nodes.radii))
+        own = nodes.radii, nodes.weights, nodes.cells, nodes.cell_nodes, nodes.coordinate
+        return ElasticOperator(*own, compliance=compliance)
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
         (radii, weights), (d_radii, d_weights) = self._nodes(scale)
-        edge, compliance = self.grid.edge(scale), self.at(scale).compliance
-        kernel = self.kernel.at(edge, 1) * (self.grid.edge_rate(scale) / edge)
+        edge, compliance = self.grid.coordinate.of(scale), self.at(scale).compliance
+        kernel = self.kernel.at(edge, 1) * (self.grid.coordinate.rate(scale) / edge)
         by_kernel = (kernel / np.maximum.outer(radii, radii)) @ (weights * pressure)
         farther = np.maximum.outer(np.arange(radii.size), np.arange(radii.size))
         by_radii = (compliance * (d_radii / radii)[farther]) @ pressure
@@ -239,7 +233,8 @@ class Interpolated(Valued, Operator):
         """Radii of Gauss's points of the cells at a scale, and weights of a ring's area; their derivatives by it."""
         grid = self.grid
         x, lengths = self._gauss_points(grid.lines(scale))
-        dx, d_lengths = self._gauss_points(grid.moving * grid.edge_rate(scale))
+        # The rate is nan on the equator: a trial that ends there is refused for it.
+        dx, d_lengths = self._gauss_points(grid.moving * grid.coordinate.rate(scale))
         (radii, slope), (ring, bend) = grid.coordinate.radius(x), grid.coordinate.ring(x)
         return (radii, ring * lengths), (slope * dx, bend * dx * lengths + ring * d_lengths)
 

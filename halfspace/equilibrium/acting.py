@@ -140,7 +140,7 @@ class Acting(Valued):
 def _edge(body: SurfaceNodes, H: Array, edge: float) -> float:
     """Largest radius at which the gaps H are those of the edge, on a grid that stands still."""
     inside = np.flatnonzero(edge > H)
-    if inside.size == 0 and not body.interpolation(0.0)[0] @ H <= edge:
+    if inside.size == 0 and not body.interpolation(0.0) @ H <= edge:
         return float("nan")
     if inside.size and inside[-1] == H.size - 1 and body.continuous_value(body.extent, H)[0] <= edge:
         return body.extent
@@ -155,11 +155,8 @@ def _edge(body: SurfaceNodes, H: Array, edge: float) -> float:
             break
         if abs(step) < PINNED * (above - below):
             return radius
-
-    def beyond(r: float) -> float:
-        return body.continuous_value(r, H)[0] - edge
-
-    return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
+    what = "the contact edge; refine the grid"
+    return root(lambda r: body.continuous_value(r, H)[0] - edge, below, above, what, xtol=1e-14)
 
 
 TRIES, PINNED = 6, 1e-8  # Newton's steps towards a contact edge; part of the nodes' distance: the next is its square

@@ -37,10 +37,10 @@ class Chart(Valued):
     until: float = np.inf
     leave: float = np.inf
 
-    def left(self, problem: Traceable, point: Point) -> bool:
+    def left(self, point: Point) -> bool:
         """Whether the contact at a point has left what the chart serves, or fills the body as allowed."""
         body = self.problem.interface.profile.end
-        return undeformed_radius(problem, point) > (WIDEST * body if np.isinf(self.until) else self.until)
+        return undeformed_radius(self.problem, point) > (WIDEST * body if np.isinf(self.until) else self.until)
 
 
 class Stage(Valued, ABC):
@@ -100,7 +100,7 @@ def _ended(to_load: float, body: float) -> Callable[[Point], bool]:
 
 def _left(chart: Chart, ended: Callable[[Point], bool]) -> Callable[[Point], bool]:
     """Stop there, or where a chart is left."""
-    return lambda point: ended(point) or chart.left(chart.problem, point)
+    return lambda point: ended(point) or chart.left(point)
 
 
 def _pace(before: Sequence[Segment]) -> Steps:

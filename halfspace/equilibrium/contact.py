@@ -267,8 +267,10 @@ class ContactProblem(Valued):
         if np.isnan(radius):
             return
         require_narrow(radius, self.operator.widest_radius)
-        spacing, intervals = body.spacing(radius), max(body.cell_nodes.shape[1] - 1, 1)
-        limit = self.scales.spike_width * widest_interval(body.cell_nodes.shape[1])
+        cell, nodes = body.cell_of(radius), body.cell_nodes.shape[1]
+        intervals = max(nodes - 1, 1)
+        spacing = float((body.cells[cell + 1] - body.cells[cell]) / intervals)
+        limit = self.scales.spike_width * widest_interval(nodes)
         if spacing > limit * (1 + 1e-9):
             raise GridTooCoarse(
                 f"grid spacing {spacing:.3g} beta at the contact edge, radius {radius:.3g} beta, "
@@ -315,21 +317,16 @@ class ContactProblem(Valued):
 def _left_out(coefficients: Array) -> float:
     """What a polynomial leaves out at the end of a cell, by the sizes of its Legendre coefficients: the last ones.
 
-    Since one may be small by accident, the third last counts as well, carried on by how fast they fall: half way to the
-    next, in their logarithms, since they fall unevenly.
+    Since one may be small by accident, the third last counts as well, carried on by how fast they fall, if there are
+    enough to tell: half way to the next, in their logarithms, since they fall unevenly.
     """
-    return _carried_on(coefficients, np.array([0.5, 0.0, 0.0]))
-
-
-def _carried_on(coefficients: Array, orders: Array) -> float:
-    """Largest of the last three coefficients, each carried on by so many orders, if there are enough to tell how."""
     count = coefficients.size
     last = coefficients[max(min(2, count - 1), count - 3) :]  # but no displacement, and no slope
     if count < 6:
         return float(last.max())
     before, after = coefficients[-5:-3].max(), coefficients[-3:-1].max()  # two orders apart
     fall = min(1.0, after / before) if before else 1.0
-    return float((last * fall ** (orders / 2)).max())
+    return float((last * fall ** np.array([0.25, 0.0, 0.0])).max())
 
 
 def _last_but_one(coefficients: Array) -> float:

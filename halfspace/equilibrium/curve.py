@@ -239,7 +239,9 @@ class EquilibriumPath(WithEvents, Valued):
     @cached_property
     def stable(self) -> NDArray[np.bool_]:
         """Stability under fixed grips, from the inertia of the tangent, shape (points,)."""
-        return np.concatenate([_stable(segment) for segment in self.finest_curve.segments])
+        segments = self.finest_curve.segments
+        found = [part.problem.negative_directions(point.x) == 0 for part in segments for point in part.points]
+        return np.array(found, dtype=bool)
 
     @property
     def rates(self) -> Array:
@@ -277,7 +279,3 @@ def _told(event: Event) -> str:
         f"{event.name} at approach {event.approach:.6g} +- {event.approach_error:.1g} eps, "
         f"load {event.load:.6g} +- {event.load_error:.1g} R dgamma"
     )
-
-
-def _stable(segment: Segment) -> NDArray[np.bool_]:
-    return np.array([segment.problem.negative_directions(point.x) == 0 for point in segment.points], dtype=bool)

@@ -214,17 +214,13 @@ def _cut(segments: Sequence[Segment], folds: Sequence[_Placed]) -> tuple[list[Se
     return whole, placed
 
 
-def _at_base_of(fold: _Placed, segments: Sequence[Segment], compliance: float) -> list[_Placed]:
-    """States of a curve at the base of a take-off."""
-    return _in_order(segments, Condition(APPROACH, value=_base(fold.state, compliance), compliance=compliance))
-
-
 def _on(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: float) -> Iterator[JumpStates]:
     """Jumps on: from the first fold, and from that at the end of each stable stretch that is landed on."""
     passed = 0
     while passed < len(folds):
         fold, following = folds[passed], folds[passed + 1 :]
-        beyond = [s for s in _at_base_of(fold, segments, compliance) if following and s.place > following[0].place]
+        met = _in_order(segments, _held(fold.state, compliance))
+        beyond = [s for s in met if following and s.place > following[0].place]
         if not beyond:
             load = segments[-1].points[-1].observables[LOAD]
             raise NotConverged(
@@ -241,34 +237,32 @@ def _off(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: floa
     left = len(folds)
     while left:
         fold, before = folds[left - 1], folds[: left - 1]
-        between = [
-            s
-            for s in _at_base_of(fold, segments, compliance)
-            if before and before[0].place < s.place < before[-1].place
-        ]
+        met = _in_order(segments, _held(fold.state, compliance))
+        between = [s for s in met if before and before[0].place < s.place < before[-1].place]
         landing = next((state for state in reversed(between) if state.stable), None)
         landed = landing.state if landing else apart(segments[0].problem, fold.state, compliance)
         yield JumpStates(fold.state, landed, on=False)
         left = sum(fold.place < landing.place for fold in folds) if landing else 0
 
 
-def apart(problem: Traceable, off: Located, compliance: float = 0.0) -> Located:
+def apart(problem: Traceable, off: Located, compliance: float) -> Located:
     """State of the separated branch at the base of a jump off, which may be beyond the beginning of the curve."""
-    base = _base(off, compliance)
+    base = _held(off, compliance).value
     separated = widened(problem, base)
     return required(landing_of(off, separated, separated.undeformed(base), compliance))
 
 
-def _base(state: Located, compliance: float) -> float:
-    """B = alpha* + W/k."""
-    return float(state.point.observables[APPROACH] + compliance * state.point.observables[LOAD])
+def _held(state: Located, compliance: float) -> Condition:
+    """The base at a state, b = alpha* + W/k, as it is held in a jump from there."""
+    base = Condition(APPROACH, compliance=compliance)
+    return replace(base, value=base.level(state.point))
 
 
-def landing_of(take_off: Located, problem: Traceable, start: Array, compliance: float = 0.0) -> Located | Unsolved:
+def landing_of(take_off: Located, problem: Traceable, start: Array, compliance: float) -> Located | Unsolved:
     """State on a discretisation at the base of a take-off."""
-    base, weights = _base(take_off, compliance), np.array([1.0, compliance, 0.0, 0.0])
-    point = solved_point(problem, start, Control(weights, base), metric_for(problem), weights)
-    return point and Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
+    held = _held(take_off, compliance)
+    point = solved_point(problem, start, Control(held.weights, held.value), metric_for(problem), held.weights)
+    return point and Located(held, problem, point, 1.0)
 
 
 def _refined(compliance: float, stage: Stage, states: JumpStates) -> JumpStates | Unsolved:
@@ -279,10 +273,10 @@ def _refined(compliance: float, stage: Stage, states: JumpStates) -> JumpStates 
     take_off: Located = fold
 
     def land(state: Located, problem: Traceable) -> Located | Unsolved:
-        wide, base = _wide_enough(state, problem), _base(take_off, compliance)
+        wide = _wide_enough(state, problem)
         found = tried(landing_of, take_off, wide, transfer(state.problem, state.point.x, wide), compliance)
         # Where that is too far off, along the path.
-        there = replace(state, condition=Condition(APPROACH, value=base, compliance=compliance))
+        there = replace(state, condition=_held(take_off, compliance))
         return found or stage.moved(there, wide)
 
     landing = settled(states.landing, stage, land)

@@ -135,10 +135,6 @@ class Tolerance:
         sizes = {"approach": self.approach, "load": size}
         return tuple(name for name, size in sizes.items() if not getattr(event, f"{name}_error") <= self.rtol * size)
 
-    def told(self, events: Mapping[str, Event]) -> dict[str, dict[str, Any]]:
-        """By event, its numbers and which of them miss it, as plain data."""
-        return {name: {**event.numbers, "missed": self.missed_by(event)} for name, event in events.items()}
-
     def missed(self, events: Mapping[str, Event]) -> dict[str, tuple[str, ...]]:
         """By event, the numbers that miss it; empty if it is met."""
         return {name: numbers for name, event in events.items() if (numbers := self.missed_by(event))}
@@ -184,7 +180,8 @@ class WithEvents:
     @property
     def stable_under_dead_load(self) -> NDArray[np.bool_]:
         """Stability of the points under a dead load: stable under fixed grips and dW/dalpha positive, (points,)."""
-        return _under_dead_load(self)
+        path: Any = self  # each kind of curve has its own `stable` and `rates`
+        return np.asarray(path.stable & (path.rates[:, LOAD] * path.rates[:, APPROACH] > 0))
 
     def to_dict(self) -> dict[str, Any]:
         """All numbers as plain data: events, points, and what they rest on.
@@ -193,8 +190,9 @@ class WithEvents:
         ``approach_error`` ..., and which of them are ``missed``; ``curve`` has the arrays of the points by name, with
         ``stable_under_fixed_grips`` and ``stable_under_dead_load``; all else is as the attributes.
         """
+        tolerance = self.tolerance
         return {
-            "events": self.tolerance.told(self.events),
+            "events": {name: {**e.numbers, "missed": tolerance.missed_by(e)} for name, e in self.events.items()},
             "curve": points_of(self),
             **{name: getattr(self, name) for name in ("met", "unknowns", "seconds", "settings")},
         }
@@ -205,10 +203,6 @@ def points_of(path: Any) -> dict[str, Array]:
     names = ("arclength", *OBSERVABLES, *(f"{name}_error" for name in OBSERVABLES))
     stable = {"stable_under_fixed_grips": path.stable, "stable_under_dead_load": path.stable_under_dead_load}
     return {name: getattr(path, name) for name in names} | stable
-
-
-def _under_dead_load(path: Any) -> NDArray[np.bool_]:
-    return np.asarray(path.stable & (path.rates[:, LOAD] * path.rates[:, APPROACH] > 0))
 
 
 def tolerance_told(rtol: float, missed: Mapping[str, Sequence[str]]) -> str:

@@ -232,8 +232,9 @@ class FinestCurve(Valued):
 
     def _at(self, coordinate: str, value: float, branch: str | None) -> Array:
         """Numbers of one state and their errors, (8,)."""
-        k, _ = COORDINATES[coordinate]
-        problem, point, bend = self._solved(k, value, self.parts(coordinate)[self._chosen(coordinate, value, branch)])
+        k, unit = COORDINATES[coordinate]
+        name = chosen_branch(self.branches(coordinate), coordinate, unit, value, branch)
+        problem, point, bend = self._solved(k, value, self.parts(coordinate)[name])
         errors = self._errors(problem, point)
         if np.isfinite(errors[k]):
             errors = errors + np.abs(point.rates) * shift(errors[k], abs(point.rates[k]), bend)
@@ -282,10 +283,6 @@ class FinestCurve(Valued):
     def _is_left_behind(self, problem: Traceable) -> bool:
         return any(problem is one for one in self.left_behind)
 
-    def _chosen(self, coordinate: str, value: float, branch: str | None) -> str:
-        """Name of the branch that is asked for, if it has the value, or of the only one that has."""
-        return chosen_branch(self.branches(coordinate), coordinate, COORDINATES[coordinate][1], value, branch)
-
     def _errors(self, problem: Traceable, point: Point) -> Array:
         """Errors of the observables in the plane across the path, (4,); nan where there is nothing to compare with."""
         ladder = self.ladder.along
@@ -293,8 +290,8 @@ class FinestCurve(Valued):
             return np.full(4, np.nan)
         here = Located(PLANE, problem, point, 1.0)
         chains = not self._is_left_behind(problem) and ladder.chains(here, placed)
-        if not chains:
-            return _unbounded(point)
+        if not chains:  # another discretisation does not have it
+            return np.where(np.isnan(point.observables), np.nan, np.inf)
         errors = errors_of(chains, ladder.rule)
         if ladder.twin:
             return errors
@@ -307,11 +304,6 @@ class FinestCurve(Valued):
 # others are told their own errors in the median, and no less than 0.35 of them.
 EVERY = 3
 PLANE = Condition(APPROACH)  # of a state that meets no condition but lies in a plane across the path
-
-
-def _unbounded(point: Point) -> Array:
-    """Errors at a point that another discretisation does not have, (4,)."""
-    return np.where(np.isnan(point.observables), np.nan, np.inf)
 
 
 def shift(change: float, rate: float, bend: float) -> float:

@@ -149,7 +149,8 @@ class Sphere:
 
     def surface(self, tabor: float) -> Surface:
         """Heights in beta^2/R; raise InputError where the sphere is as small as its contact."""
-        return between_spheres(math.sqrt(require_radius_ratio(self.radius_ratio, tabor) / tabor), self.counter_radius)
+        R = math.sqrt(require_radius_ratio(self.radius_ratio, tabor) / tabor)  # of the pair, 1/R = 1/R1 + 1/R2
+        return SphereSurface(R * (1 + 1 / self.counter_radius), R * (1 + self.counter_radius))
 
 
 @dataclass(frozen=True)
@@ -180,11 +181,3 @@ class SphereSurface(Dimensionless):
                 sine = radii / own
                 with np.errstate(invalid="ignore"):
                     yield 1 / (1 + own / other), np.sqrt((1 - sine) * (1 + sine))
-
-
-def between_spheres(R: float, counter_radius: float = np.inf) -> Surface:
-    """Gap between a sphere and another of R2/R1 times its radius, or a wall if that is infinite.
-
-    The radius R of the pair is in beta, 1/R = 1/R1 + 1/R2.
-    """
-    return SphereSurface(R * (1 + 1 / counter_radius), R * (1 + counter_radius))

@@ -149,12 +149,8 @@ class JKRSphere:
 
     def _state(self, shape: Callable[[Array], Array], value: float) -> ContactState:
         """State in which a^(3/2) times a shape of a/X, which rises from about 1 to infinity, has a value."""
-        X = self.radius
-
-        def excess(x: float) -> float:
-            return float((x * X) ** 1.5 * shape(np.array(x))) - value
-
-        x = root(excess, 0.0, OUTERMOST, "the contact radius over R; take a larger radius_ratio", xtol=1e-300)
+        X, what = self.radius, "the contact radius over R; take a larger radius_ratio"
+        x = root(lambda x: float((x * X) ** 1.5 * shape(np.array(x))) - value, 0.0, OUTERMOST, what, xtol=1e-300)
         a = x * X
         return ContactState(float(self.approach(a)), float(self.load(a)), a)
 

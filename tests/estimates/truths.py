@@ -29,7 +29,7 @@ from halfspace.equilibrium.events import is_event, numbered
 from halfspace.equilibrium.search import brackets_of, energy_released, find_events, with_care
 from halfspace.errors import required
 from halfspace.laws import LENNARD_JONES
-from halfspace.profiles.formulas import between_spheres
+from halfspace.profiles import Sphere
 from halfspace.scales import Scales
 
 LEFT = 1e-9  # R dgamma or eps
@@ -68,7 +68,7 @@ def on(stage, state):
 
 def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
     """The half-space under a sphere or two."""
-    return under_surface(tabor, between_spheres(float(np.sqrt(radius_ratio / tabor)), counter_radius))
+    return under_surface(tabor, Sphere(radius_ratio, counter_radius).surface(tabor))
 
 
 def under_surface(tabor, surface, law=LENNARD_JONES):
@@ -89,7 +89,7 @@ def layered(scene):
 def _layered(scene, nodes, finest, growth, far, spacing, last):
     body, profile = scene.body.layered, scene.shape.surface(scene.tabor)
     scales = Scales(scene.tabor, scene.law, profile, body)
-    outer = min(profile.end, scales.outer_radius((far * scales.widened) ** 2 / 2))
+    outer = min(profile.end, scales.radius_at((far * scales.widened) ** 2 / 2))
     rim = np.geomspace(outer, FARTHEST * outer, 18) if np.isinf(profile.end) and np.isfinite(scene.law.decay) else None
     make = partial(_layered_panels, images_of(body, spacing), nodes, rim)
     last = last * outer if outer == profile.end else np.inf

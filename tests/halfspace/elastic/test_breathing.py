@@ -58,7 +58,7 @@ def body(request):
 
 
 def _between(scales, operators, moving):
-    edges = np.array([moving.edge(float(a)) for a in scales])
+    edges = np.array([moving.coordinate.of(float(a)) for a in scales])
     part = Part(edges, lambda: kernels_of(operators))
     return Interpolated(Piecewise(edges[[0, -1]], [part]), operators[0].cell_nodes, moving)
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from fem_adhesion.common.fold_birth import approached
-from halfspace.accuracy.grids import half_space_charts, resolution_for, rings
+from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for, rings
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
@@ -141,7 +141,7 @@ def test_the_load_does_not_miss_the_attraction_beyond_the_grid(tabor, gap):
     """The same state on grids of any extent."""
     states = []
     for extent in (6.0, 9.0, 60.0):
-        lines = rings(Scales(tabor), 0.4, 2.0, extent * tabor**0.25)
+        lines = rings(Scales(tabor), Resolution(16, 0.4, 2.0, extent * tabor**0.25))
         problem = ContactProblem(compliance.to_infinity(compliance.panels(lines.centred, 14), 14), tabor)
         x = newton.solve(problem, approached(problem, min(gap, 1.0)), newton.central_gap(gap)).x
         states.append(problem.observables(x)[:3])
