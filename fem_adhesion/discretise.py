@@ -88,8 +88,7 @@ def discretise(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
     if counter is None:
         first = _condensed(scene.body, mesh_of(scene, core, how), how)
         own, R = first.surface, scene.sphere_radius
-        given = scene.body.file is not None
-        surface = TabulatedSurface(own.radii, R * own.depths, R * own.slopes) if given else scene.surface
+        surface = TabulatedSurface(own.radii, R * own.depths, R * own.slopes) if scene.body.file else scene.surface
         operator = first.operator
         if scene.body.layered and len(rim) > 1:  # strata that are far out and rigid
             operator = with_rigid_rim(operator, rim, FLAT)
@@ -125,17 +124,9 @@ def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) 
     last = at_equator(scene.tabor, scene.surface, how.degree + 2) if ends else np.inf
     first = at_tip(scene.surface, how.degree + 2)
     finest = finest_length(scene, how) / scene.scales.edge_cell(1.0)
+    make, strip = partial(_made, scene, how), scene.body.strip
     return SizedBody(
-        scene.scales,
-        partial(_made, scene, how),
-        finest,
-        how.growth,
-        outer,
-        coordinate,
-        last=last,
-        to_load=to_load,
-        first=first,
-        strip=scene.body.strip,
+        scene.scales, make, finest, how.growth, outer, coordinate, last=last, to_load=to_load, first=first, strip=strip
     )
 
 

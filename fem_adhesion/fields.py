@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.discretise import Discretised, discretised_about
+from fem_adhesion.discretise import discretised_about
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.stress import recovered_stresses
 from fem_adhesion.elasticity.surface import BoundaryPoints
@@ -29,7 +29,7 @@ from halfspace.equilibrium.charts import metric_for, transfer
 from halfspace.equilibrium.conditions import Located, same_place
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import EVENTS
+from halfspace.equilibrium.events import usual
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Point
 from halfspace.errors import InputError, required
@@ -158,7 +158,12 @@ def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", 
     """
     require_fields(scene)
     made = discretised_about(scene, float(point.observables[CONTACT_RADIUS]), how)
-    return _solved(made, problem, point, name)
+    body, own = made.first, made.problem
+    new = required(same_place(point, own, transfer(problem, point.x, own), metric_for(own)))
+    own.require_resolution(new.x)
+    u = body.displacement(own.pressure(new.x)[: body.surface.radii.size])
+    space, u, stress = recovered_stresses(body.space, scene.body.regions, u)
+    return State(scene, name, space, scene.shares[0] * u, stress, body.surface, own, new)
 
 
 def states_along(
@@ -173,8 +178,7 @@ def states_along(
     require_fields(scene)
     chosen = [("", *path_point) for path_point in _spread(path, points)]
     if events:
-        last = path.stages[-1]
-        chosen += [(name, last[name].problem, last[name].point) for name in EVENTS if name in last]
+        chosen += [(name, event.problem, event.point) for name, event in usual(path.stages[-1]).items()]
     for name, problem, point in sorted(chosen, key=lambda entry: entry[2].arclength):
         yield state_at(scene, problem, point, name=name, how=how)
 
@@ -198,15 +202,6 @@ def _spread(path: EquilibriumPath, count: int | None) -> list[tuple[Traceable, P
     wanted = np.linspace(arclength[0], arclength[-1], count)
     nearest = np.abs(arclength - wanted[:, None]).argmin(axis=1) if count else []
     return [every[number] for number in np.unique(nearest).astype(int)]
-
-
-def _solved(made: Discretised, source: Traceable, point: Point, name: str) -> State:
-    scene, problem, body = made.scene, made.problem, made.first
-    new = required(same_place(point, problem, transfer(source, point.x, problem), metric_for(problem)))
-    problem.require_resolution(new.x)
-    u = body.displacement(problem.pressure(new.x)[: body.surface.radii.size])
-    space, u, stress = recovered_stresses(body.space, scene.body.regions, u)
-    return State(scene, name, space, scene.shares[0] * u, stress, body.surface, problem, new)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -86,15 +86,6 @@ def _displacements(poisson: float, normal: Array, shear: Array) -> tuple[Array, 
     return radial / (1 - nu), polar / (1 - nu)
 
 
-def _deflections(R: float, poisson: float, radii: Array, p: Array) -> Array:
-    """Deflections -u_z = -u_r cos(theta) + u_theta sin(theta) at radii, one column for each of the coefficients."""
-    sine = radii / R
-    x = np.sqrt((1 - sine) * (1 + sine))
-    radial, polar = _displacements(poisson, *_traction(p))
-    P, D = legendre(len(radial), x)
-    return np.asarray(R * ((D * sine).T @ polar - (P * x).T @ radial))
-
-
 # Its surface in cells, in each of which a pressure is a polynomial by Gauss's nodes
 
 
@@ -136,8 +127,11 @@ def sphere_compliance(
     The sphere has a radius R in beta and so many even n; the cells between the lines, with so many nodes each, are of
     its surface, or of another sphere's under which it lies. Radii (k,) are those of the nodes unless given.
     """
-    at = grid.gauss_points(lines, nodes)[0].ravel() if radii is None else radii
-    return _deflections(R, poisson, at, coefficients(lines, nodes, R, harmonics))
+    sine = (grid.gauss_points(lines, nodes)[0].ravel() if radii is None else radii) / R
+    x = np.sqrt((1 - sine) * (1 + sine))
+    radial, polar = _displacements(poisson, *_traction(coefficients(lines, nodes, R, harmonics)))
+    P, D = legendre(len(radial), x)
+    return np.asarray(R * ((D * sine).T @ polar - (P * x).T @ radial))  # -u_z = -u_r cos(theta) + u_theta sin(theta)
 
 
 # The solver

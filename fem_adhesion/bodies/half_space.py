@@ -46,14 +46,7 @@ class HalfSpace(Body):
         depths = grid.graded(0.0, min(length, BESIDE * R), how.beyond * R, growth=how.growth)
         return with_contact_to(tensor_grid(np.concatenate([lines, R + past]), depths), R)
 
-    def facing(
-        self,
-        R: float,  # noqa: ARG002 (it is flat)
-        lines: Array,
-        length: float,
-        smaller: float,
-        how: Discretisation,
-    ) -> Any:
+    def facing(self, R: float, lines: Array, length: float, smaller: float, how: Discretisation) -> Any:  # noqa: ARG002
         """Block whose cells end where those of the sphere do, and beyond at ever larger distances."""
         from fem_adhesion.mesh.spheres import block_under
 

@@ -36,34 +36,29 @@ def add_options(command: Parser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Compare all scenes asked for, print a table each, and write the record."""
     from fem_adhesion.common.record import record as run_record
+    from fem_adhesion.crosscheck import comparison
     from fem_adhesion.crosscheck import scenes as comparisons
-    from fem_adhesion.crosscheck.comparison import (
-        crosscheck_record,
-        crosscheck_tables,
-        require_comparable,
-        verdict_told,
-    )
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
     scenes = [scene_of(options, mu) for mu in options.tabor]
     for scene in scenes:
-        require_comparable(scene, options.rtol)
+        comparison.require_comparable(scene, options.rtol)
     console, how = console_beside(options.json), {"jobs": options.jobs, "dask": options.dask}
     with all_written(json=options.json) as files:
         with progress_bar() as step:
             cases = comparisons.run(scenes, rtol=options.rtol, progress=step, **how)
-        record = run_record(rtol=options.rtol) | crosscheck_record(cases)
+        record = run_record(rtol=options.rtol) | comparison.crosscheck_record(cases)
         if "json" in files:
             json.dump(record, files["json"], indent=1, allow_nan=False)
-    console.print(*verdict_told(cases), "", sep="\n", highlight=False, markup=False)
+    console.print(*comparison.verdict_told(cases), "", sep="\n", highlight=False, markup=False)
     for case in cases:
         if case.reason:
             failed = f"{', '.join(case.scene.words)}: failed: {case.told}"
             lines = [failed, *(f"  {row.quantity}: {row.verdict}" for row in case.rows)]
             console.print(*lines, "", sep="\n", highlight=False, markup=False)
         else:
-            for table in crosscheck_tables(case):
+            for table in comparison.crosscheck_tables(case):
                 console.print(table)
                 console.print()
     return AGREE if record["verdict"] == "agree" else DISAGREE

@@ -14,9 +14,7 @@ class Settings:
     """
 
     # Levels 1 to 3: the solvers
-    pointwise: float = (
-        10.0  # budget of gaps, radii and deflections, in that of loads, which are averages; as of level 4
-    )
+    pointwise: float = 10.0  # budget of gaps, radii, deflections, in that of loads, which are averages; as of level 4
     residual: float = 50.0  # budget of residuals, which see every wiggle of the pressure, in the same
     tightest: float = 1e-9  # least tolerance of a solver
     closer: tuple[float, ...] = (10.0, 100.0)  # factors of the tolerance asked for again where estimates leave it open

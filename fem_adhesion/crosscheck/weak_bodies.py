@@ -179,9 +179,8 @@ def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) 
     # The first body's, or where what attracts ends.
     R = bodies[0] if np.isfinite(bodies[0]) else min(R, scene.surface.end)
     radius, reach = (min(r, USUAL.widest * R) for r in (radius, reach))  # what attracts from afar may be wider
-    how = Discretisation(
-        degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, USUAL.growth, USUAL.rings
-    )
+    finest = 2 * _finest(scene, radius) * radius / scene.scales.spike_width
+    how = Discretisation(degree, finest, USUAL.growth, USUAL.rings)
     if isinstance(scene.body, Stratified) and scene.body.held == "substrate":
         how = replace(how, beyond=_clamped(scene, scene.body, load, R, radius))
     outer, coordinate = scene.body.layout(R, replace(how, rings=0) if scene.counter else how)
@@ -223,10 +222,8 @@ def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float
 
 def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:
     """Body as it is held."""
-    material, slides = elastic.material, elastic.held in ("sliding", "sheet")
-    body = discretise(
-        mesh, degree, elastic.regions, slides=slides, plate=elastic.endless, on_surface=material.area == "surface"
-    )
+    slides, on_surface = elastic.held in ("sliding", "sheet"), elastic.material.area == "surface"
+    body = discretise(mesh, degree, elastic.regions, slides=slides, plate=elastic.endless, on_surface=on_surface)
     if not elastic.endless:
         return body
     # On a half-space (1 - r^2/e^2)^(3/2), of the load 2 pi e^2/5, does the work 4 pi^2 e^3/35.

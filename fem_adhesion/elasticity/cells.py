@@ -179,11 +179,7 @@ def cell_quadrature(space: Space) -> tuple[Array, Array]:
     where u_r = 0, and rational elsewhere. Its error is below a thousandth of the element's own: six more points in each
     direction change the deflection by quadrilaterals of degree 6 by 2e-12, which is in error by 1e-7.
     """
-    return quadrature(space.element, _order(space))
-
-
-def _order(space: Space) -> int:
-    return 2 * space.degree + (2 if space.element.refdom is RefTri else 1)
+    return quadrature(space.element, 2 * space.degree + (2 if space.element.refdom is RefTri else 1))
 
 
 def inverted(jacobian: Array) -> tuple[Array, Array]:
@@ -209,19 +205,13 @@ Stiffness = Callable[[], Iterator[tuple[Index, Array]]]
 """Gives the stiffness (k, 2 n, 2 n) of all cells, few at a time, with their numbers (k,): whole it fills the memory."""
 
 
-def stiffness_of(space: Space, materials: Sequence[Elastic]) -> Iterator[tuple[Index, Array]]:
-    """Stiffness of every cell, of the material of its region, see `Stiffness`."""
+def stiffness_of(space: Space, materials: Sequence[Elastic], *, remedy: bool = True) -> Iterator[tuple[Index, Array]]:
+    """Stiffness of every cell, of the material of its region, see `Stiffness`; displacements alone without `remedy`."""
     for cells, (poisson, modulus) in zip(space.regions(materials), materials, strict=True):
         part = space if len(materials) == 1 else Space(space.mesh.restrict(cells), space.element)
-        stiffness = projected_stiffness if projects(space, poisson) else cell_stiffness
+        stiffness = projected_stiffness if remedy and projects(space, poisson) else cell_stiffness
         for own, few in Cells.of(part).batches():
             yield cells[own], modulus * stiffness(few, poisson)
-
-
-def unprojected(space: Space, poisson: float) -> Iterator[tuple[Index, Array]]:
-    """Stiffness of every cell by displacements alone, see `Stiffness`."""
-    for own, few in Cells.of(space).batches():
-        yield np.arange(space.mesh.nelements)[own], cell_stiffness(few, poisson)
 
 
 def projected_stiffness(cells: Cells, poisson: float) -> Array:
@@ -248,5 +238,4 @@ def pressure_modes(space: Space) -> Array:
     if space.degree < 2 or space.element.refdom.nnodes != 4:
         raise InputError(f"{type(space.element).__name__} has no projected dilatation; use ElementQuadP(2) or more")
     x, y = 2.0 * cell_quadrature(space)[0] - 1.0
-    modes: Array = legvander2d(x, y, [space.degree - 1, space.degree - 1])[:, :-1]
-    return modes
+    return np.asarray(legvander2d(x, y, [space.degree - 1, space.degree - 1])[:, :-1])

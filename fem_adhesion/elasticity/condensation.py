@@ -8,7 +8,7 @@ from functools import cached_property, partial
 import numpy as np
 from scipy.linalg.blas import dtrsm
 
-from fem_adhesion.elasticity.cells import Stiffness, unprojected
+from fem_adhesion.elasticity.cells import Stiffness, stiffness_of
 from fem_adhesion.elasticity.elimination import (
     Factors,
     Region,
@@ -23,6 +23,7 @@ from fem_adhesion.elasticity.elimination import (
 from fem_adhesion.elasticity.exterior import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.surface import BoundaryPoints, boundary_points
+from fem_adhesion.materials import Elastic
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -162,7 +163,7 @@ def condense(
     if points <= space.degree:
         raise InputError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
     surface, exterior = boundary_points(space, "contact", points), far_field(space, poisson)
-    stiffness = stiffness or partial(unprojected, space, poisson)
+    stiffness = stiffness or partial(stiffness_of, space, [Elastic(poisson)], remedy=False)
     yielding = flexibility(space, stiffness, exterior, space.components[1, surface.functions])
     operator = surface_operator(surface, exterior, yielding, traction)
     return CondensedBody(operator, space, stiffness, exterior, surface)

@@ -192,12 +192,10 @@ class Meeting(Valued):
             parts = [] if region.stop - region.start <= LEAST else [made.pop(), made.pop()][::-1]
             own = rank[numbers[:, region].T] if not parts else np.concatenate([rank[part.unknowns] for part in parts])
             ranks = np.unique(own[own >= 0])
-            complete, left = (
-                order[ranks[own]] for own in (owners[order[ranks]] == number, owners[order[ranks]] > number)
-            )
-            made.append(
-                Region(tuple(parts), chosen[region], left, complete, _places(parts, rank, own, ranks, complete.size))
-            )
+            known = order[ranks]
+            complete, left = known[owners[known] == number], known[owners[known] > number]
+            places = _places(parts, rank, own, ranks, complete.size)
+            made.append(Region(tuple(parts), chosen[region], left, complete, places))
         return made[0]
 
 

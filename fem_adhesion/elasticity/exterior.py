@@ -55,7 +55,8 @@ def with_interiors(exterior: Exterior, space: Space, more: int = 0) -> Exterior:
     Of the unknowns beyond the displacements, such as pressures, each is a reduced one: so many `more`, the last.
     """
     inner, none = space.interior_dofs, sparse.csc_array((more, more))
-    T = sparse.block_diag([sparse.hstack([_unit_columns(space, inner), exterior.reduction]), sparse.eye_array(more)])
+    own = sparse.eye_array(space.unknowns, format="csc")[:, inner]
+    T = sparse.block_diag([sparse.hstack([own, exterior.reduction]), sparse.eye_array(more)])
     S = sparse.block_diag([sparse.csc_array((len(inner), len(inner))), exterior.stiffness, none])
     return Exterior(sparse.csc_array(T), sparse.csc_array(S), exterior.rigid_compliance)
 
@@ -165,17 +166,11 @@ def boussinesq_stress(r: Array, z: Array, poisson: float) -> Array:
 
 def _axis_unknowns(space: Space) -> Index:
     """Return the unknowns that must vanish: u_r on the axis."""
-    unknowns: Index = space.components[0, space.boundary_functions("axis")]
-    return unknowns
+    return np.asarray(space.components[0, space.boundary_functions("axis")], dtype=np.intp)
 
 
 def _selection(space: Space, dropped: Index) -> sparse.csc_array:
     """Return the columns of the identity for all unknowns but those dropped, held by the axis or interior to a cell."""
     kept = np.ones(space.unknowns, dtype=bool)
     kept[np.concatenate([dropped, _axis_unknowns(space), space.interior_dofs])] = False
-    return _unit_columns(space, np.flatnonzero(kept))
-
-
-def _unit_columns(space: Space, rows: Index) -> sparse.csc_array:
-    """Return one column for each of the given unknowns, with a 1 in its row."""
-    return sparse.csc_array((np.ones(len(rows)), (rows, np.arange(len(rows)))), shape=(space.unknowns, len(rows)))
+    return sparse.eye_array(space.unknowns, format="csc")[:, np.flatnonzero(kept)]

@@ -31,10 +31,7 @@ def reference_functions(element: Any, points: Array) -> tuple[Array, Array]:
 @lru_cache(maxsize=100)
 def _functions(element: Any, shape: tuple[int, ...], places: bytes) -> tuple[Array, Array]:
     points = np.frombuffer(places).reshape(shape)
-    count = (
-        element.refdom.nnodes * element.nodal_dofs + element.refdom.nfacets * element.facet_dofs + element.interior_dofs
-    )
-    found = [element.lbasis(points, i) for i in range(count)]
+    found = [element.lbasis(points, i) for i in range(len(element.doflocs))]
     values = np.array([np.broadcast_to(value, points.shape[1:]) for value, _ in found])
     slopes = np.array([np.broadcast_to(slope, points.shape) for _, slope in found])
     values.flags.writeable = slopes.flags.writeable = False

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from scipy import sparse
-from skfem import Dofs, ElementVector
+from skfem import Dofs
 
 from fem_adhesion.elasticity.reference import quadrature, reference_functions
 from fem_adhesion.materials import Elastic
@@ -30,11 +30,6 @@ class Space(Valued):
 
     mesh: Any
     element: Any
-
-    @cached_property
-    def dofs(self) -> Any:
-        """Numbering of the vector unknowns, that of skfem.Basis(mesh, ElementVector(element))."""
-        return Dofs(self.mesh, ElementVector(self.element))
 
     @cached_property
     def scalar_dofs(self) -> Any:
@@ -64,10 +59,7 @@ class Space(Valued):
 
     def boundary_functions(self, name: str) -> Index:
         """Return the numbers of the scalar functions that do not vanish on the named boundary, ascending."""
-        dofs, facets = self.scalar_dofs, self.mesh.boundaries[name]
-        corners = np.unique(self.mesh.facets[:, facets])
-        along = dofs.facet_dofs[:, facets] if self.element.facet_dofs else dofs.facet_dofs
-        return np.sort(np.concatenate([dofs.nodal_dofs[:, corners].ravel(), along.ravel()]).astype(np.intp))
+        return np.asarray(self.scalar_dofs.get_facet_dofs(self.mesh.boundaries[name]).flatten(), dtype=np.intp)
 
     @cached_property
     def constant(self) -> Array:
@@ -110,11 +102,6 @@ def ring_measure(r: Array) -> Array:
 
 def scatter(blocks: Array, dofs: Index, size: int) -> sparse.csc_array:
     """Add up the (cells, n, n) blocks of the (n, cells) unknowns in a sparse matrix of the given size."""
-    return scatter_pairs(blocks, dofs, dofs, (size, size))
-
-
-def scatter_pairs(blocks: Array, row_dofs: Index, column_dofs: Index, shape: tuple[int, int]) -> sparse.csc_array:
-    """Add up (cells, m, n) blocks that couple the (m, cells) unknowns of one space with the (n, cells) of another."""
-    rows = np.broadcast_to(row_dofs.T[:, :, None], blocks.shape).ravel()
-    columns = np.broadcast_to(column_dofs.T[:, None, :], blocks.shape).ravel()
-    return sparse.csc_array((blocks.ravel(), (rows, columns)), shape=shape)
+    rows = np.broadcast_to(dofs.T[:, :, None], blocks.shape).ravel()
+    columns = np.broadcast_to(dofs.T[:, None, :], blocks.shape).ravel()
+    return sparse.csc_array((blocks.ravel(), (rows, columns)), shape=(size, size))

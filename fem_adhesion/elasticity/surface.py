@@ -21,9 +21,9 @@ class BoundaryPoints(Valued):
 
     Places and normals (2, facets, k) are r and z of the points, and of the outward normal there; lengths (facets, k)
     are the weights of the length along the boundary, and the ends (facets + 1,) radii of the facets' ends. Of the
-    functions (m,), those that do not vanish on it, ascending, the values (q, m) are at all q = facets k points. Of the
-    n functions of each facet's cell, whose numbers are (n, facets), the derivatives (n, facets, k) are by the arclength
-    along (n_z, -n_r): on the contact surface, whose normal is upwards at the pole, that is outwards from it.
+    functions (m,), those that do not vanish on it, ascending, there are values and rates (q, m) at all q = facets k
+    points. The rates are derivatives by the arclength along (n_z, -n_r): on the contact surface, whose normal is
+    upwards at the pole, that is outwards from it.
     """
 
     places: Array
@@ -32,13 +32,7 @@ class BoundaryPoints(Valued):
     ends: Array
     functions: Index
     values: sparse.csr_array
-    cell_functions: Index
-    derivatives: Array
-
-    @property
-    def rates(self) -> sparse.csr_array:
-        """Derivatives of the functions at the points, (q, m)."""
-        return _rows(self.derivatives, self.cell_functions, self.functions)
+    rates: sparse.csr_array
 
     @property
     def radii(self) -> Array:
@@ -101,17 +95,9 @@ def boundary_points(space: Space, name: str, points: int) -> BoundaryPoints:
     values, slopes = np.stack([value for value, _ in sides], axis=1), np.stack([slope for _, slope in sides], axis=2)
     rates = np.einsum("nifk,if->nfk", slopes, along) * -outwards / lengths
     functions, dofs = space.boundary_functions(name), np.asarray(space.scalar_dofs.element_dofs)[:, cells]
-    radii = np.sort(mesh.p[0, np.unique(vertices)])
-    return BoundaryPoints(
-        np.asarray(mapping.F(Y, tind=cells)),
-        normals,
-        lengths * weights,
-        radii,
-        functions,
-        _rows(values, dofs, functions),
-        dofs,
-        rates,
-    )
+    places, radii = np.asarray(mapping.F(Y, tind=cells)), np.sort(mesh.p[0, np.unique(vertices)])
+    rows = _rows(values, dofs, functions), _rows(rates, dofs, functions)
+    return BoundaryPoints(places, normals, lengths * weights, radii, functions, *rows)
 
 
 def _rows(values: Array, dofs: Index, functions: Index) -> sparse.csr_array:

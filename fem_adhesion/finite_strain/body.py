@@ -236,11 +236,8 @@ class Body(Valued):
 
     def _of_pressures(self, amounts: Array) -> Array:
         """Amounts at the points, integrated with each pressure function, (M,)."""
-        if not self._mixed:
-            return np.zeros(0)
-        return summed(
-            self.pressures, (self.cells.measure * amounts) @ self.pressure_functions.T, self.products.shape[0]
-        )
+        integrals = (self.cells.measure * amounts) @ self.pressure_functions.T
+        return summed(self.pressures, integrals, self.products.shape[0])
 
 
 def material_body(space: Space, poisson: float, stretch: float, pressure: Any = None) -> Body:

@@ -308,13 +308,9 @@ def finite_strain_problem(
     space = body.space
     whole = with_interiors(exterior, space, body.unknowns - space.unknowns)
     surface = contact_surface(space, whole, space.degree + 2 if points is None else points)
+    held = HeldBody(body, Dissection(space, body.cell_dofs.T, whole, surface.unknowns), settings)
     interface = ContactProblem(surface.rigid, tabor, law, profile)
-    return FiniteStrainProblem(
-        HeldBody(body, Dissection(space, body.cell_dofs.T, whole, surface.unknowns), settings),
-        surface,
-        interface,
-        convention,
-    )
+    return FiniteStrainProblem(held, surface, interface, convention)
 
 
 def assemble(

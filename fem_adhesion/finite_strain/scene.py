@@ -35,7 +35,7 @@ from halfspace.accuracy.standing import Standing, WhereAsked
 from halfspace.elastic import grid
 from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts, transfer
 from halfspace.equilibrium.conditions import Located, relocate
-from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.contact import APPROACH, LOAD, OBSERVABLES
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import REMAINING, ErrorRule, Event
 from halfspace.equilibrium.newton import Traceable
@@ -49,7 +49,6 @@ TIGHTEST = 1e-6  # limit of the relative tolerance
 LITTLE = 0.5  # R dgamma: a load past every event
 FARTHEST = 0.98  # undeformed radius in R up to which a contact may spread; small slopes end before
 JUMPS = ("pull_off", "jump_on", "jump_off")
-NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 CONSERVATIVE: tuple[TractionName, ...] = ("projected", "reference", "normal")
 
 
@@ -132,10 +131,8 @@ class Stages(Valued):
 
     def body(self, degree: int, finest: float = 1.0, growth: float = 1.0) -> ScenesBody:
         """For events, in cells of other lengths and growth by these factors: stiff surfaces have wide spikes."""
-        how = Discretisation(
-            degree, finest * (1 - softening(self.scene)) * Discretisation.finest, growth * Discretisation.growth
-        )
-        return ScenesBody(self.scene, how, self.settings)
+        length = finest * (1 - softening(self.scene)) * Discretisation.finest
+        return ScenesBody(self.scene, Discretisation(degree, length, growth * Discretisation.growth), self.settings)
 
 
 def _lowest_degree(rtol: float, tabor: float) -> int:
@@ -147,7 +144,7 @@ def _apart(scene: Scene, events: State, name: str) -> dict[str, float]:
     """How far the conservative tractions lie apart in the numbers of an event; nan if one does not have it."""
     others = (scene.made_of(NeoHookean(scene.poisson, traction)) for traction in CONSERVATIVE)
     found = [_counted(events[name], other) for other in others]
-    return dict(zip(NUMBERS, np.ptp(found, axis=0).tolist(), strict=True))
+    return dict(zip(OBSERVABLES, np.ptp(found, axis=0).tolist(), strict=True))
 
 
 def _counted(event: Located, scene: Scene) -> Array:
@@ -157,7 +154,7 @@ def _counted(event: Located, scene: Scene) -> Array:
         return event.point.observables
     other = replace(problem, convention=convention)
     found = softening(scene) < 1 and relocate(event, other, event.point.x, metric_for(other))
-    return found.point.observables if found else np.full(len(NUMBERS), np.nan)
+    return found.point.observables if found else np.full(len(OBSERVABLES), np.nan)
 
 
 def find_jumps(scene: Scene, rtol: float = 1e-4, settings: Settings = USUAL) -> dict[str, Event]:

@@ -39,8 +39,7 @@ class Patch(Valued):
         local = chebyshev_points(DEGREE)
         s = self.s[:-1, None] + np.diff(self.s)[:, None] * local
         t = self.t[:-1, None] + np.diff(self.t)[:, None] * local
-        shape = (len(s), len(t), len(local), len(local))
-        placed = self.place(np.broadcast_to(s[:, None, :, None], shape), np.broadcast_to(t[None, :, None, :], shape))
+        placed = self.place(*np.broadcast_arrays(s[:, None, :, None], t[None, :, None, :]))
         return np.asarray(placed.reshape(2, len(s) * len(t), -1))
 
 
@@ -96,10 +95,6 @@ class CurvedQuads(MeshQuad):  # type: ignore[misc]
         if not hasattr(self, "_cached_mapping"):
             self._cached_mapping = CurvedMapping(self, self.points)
         return self._cached_mapping
-
-    def name_boundaries(self, facets: dict[str, Index]) -> None:
-        """Name boundaries of a mesh just made, by facets: a copy would number its facets again."""
-        self._boundaries = facets
 
 
 def joined(patches: list[Patch], corners: list[Index]) -> CurvedQuads:
@@ -209,5 +204,4 @@ def _image(mesh: CurvedQuads, cell: int, places: Array) -> Array:
     nodes = chebyshev_points(DEGREE)
     s, t = (x.ravel() for x in np.meshgrid(nodes, nodes, indexing="ij"))
     X = places @ np.array([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t])
-    within = np.full(X.shape[1], cell)
-    return np.array([mesh.mapping().Fmap(i, X, within) for i in range(2)])
+    return np.asarray(mesh.mapping().F(X, np.full(X.shape[1], cell)))

@@ -138,7 +138,8 @@ def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) ->
     ends = mesh.p[:, mesh.facets[:, facets]]
     r, z = ends.mean(axis=1)
     masks = where(np.where(r < 1e-6 * np.hypot(*np.diff(ends, axis=1)[:, 0]), 0.0, r), z)
-    mesh.name_boundaries({name: facets[mask] for name, mask in masks.items()})
+    # In place: a copy would number its facets again.
+    mesh._boundaries = {name: facets[mask] for name, mask in masks.items()}
     return mesh
 
 
@@ -251,9 +252,8 @@ def _moved_to(rim: float, R: float, lines: Lines) -> Lines:
     if not 0 < nearest < ends.size - 1:
         return lines
     if nearest <= m:
-        return replace(
-            lines, x=np.interp(np.arange(m + 1), [0, nearest, m], [0.0, rim, rim if nearest == m else ends[m]])
-        )
+        last = rim if nearest == m else ends[m]
+        return replace(lines, x=np.interp(np.arange(m + 1), [0, nearest, m], [0.0, rim, last]))
     layers = lines.layers.copy()
     layers[nearest - m] = (rim / R - CORE) / (2 - CORE)
     return replace(lines, layers=layers)

@@ -8,7 +8,7 @@ over `SEGMENT` they leave the circle by less than 2e-4 of its radius, so that no
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 
@@ -59,14 +59,10 @@ class Lattice:
 
 @dataclass(frozen=True)
 class Cut:
-    """A body's elements cut into cells of the second order, each by a lattice.
-
-    The error is the largest distance of what the cells show from the field it was cut for, relative to its maximum.
-    """
+    """A body's elements cut into cells of the second order, each by a lattice."""
 
     space: Space
     lattice: Lattice
-    error: float
 
     @cached_property
     def numbers(self) -> Index:
@@ -76,8 +72,7 @@ class Cut:
         points = np.stack([r.ravel(), z.ravel(), region.ravel()], axis=1)
         pairs = KDTree(points).query_pairs(SAME * self._shortest(r, z), output_type="ndarray")
         links = coo_array((np.ones(len(pairs)), pairs.T), shape=2 * (len(points),))
-        numbers: Index = connected_components(links, directed=False)[1].reshape(r.shape).astype(np.intp)
-        return numbers
+        return np.asarray(connected_components(links, directed=False)[1].reshape(r.shape), dtype=np.intp)
 
     @cached_property
     def regions(self) -> Index:
@@ -128,14 +123,11 @@ def cut_for(space: Space, fields: Array, tolerance: float) -> Cut:
     Coefficients (m, functions) of the fields are taken together, as components of a vector. The tolerance is the
     largest error between the nodes, relative to the largest absolute value; for the shape, to the body's size.
     """
-    triangular = space.element.refdom is RefTri
-    lattice = Lattice(1, triangular)
-    error = _shown_error(space, fields, lattice)
-    while error > tolerance and lattice.cuts < MOST_CUTS:
+    lattice = Lattice(1, space.element.refdom is RefTri)
+    while (error := _shown_error(space, fields, lattice)) > tolerance and lattice.cuts < MOST_CUTS:
         wanted = int(np.ceil(lattice.cuts * np.cbrt(error / tolerance)))  # the error falls as their third power
-        lattice = Lattice(min(max(wanted, lattice.cuts + 1), MOST_CUTS), triangular)
-        error = _shown_error(space, fields, lattice)
-    return Cut(space, lattice, error)
+        lattice = replace(lattice, cuts=min(max(wanted, lattice.cuts + 1), MOST_CUTS))
+    return Cut(space, lattice)
 
 
 def _shown_error(space: Space, fields: Array, lattice: Lattice) -> float:
@@ -256,7 +248,7 @@ def _clockwise(points: Array, cells: Index) -> Index:
 
 def _kinds(axial: NDArray[np.bool_], cells: Index) -> list[tuple[int, Index, Index]]:
     """VTK's type, table and cells of each kind of solid cell."""
-    if cells.shape[1] == len(_MIRRORED[6]):
+    if cells.shape[1] == 6:
         return [(WEDGE18, _WEDGE_OF_TRIANGLE6, cells)]
     first = np.arange(4)
     on_axis = axial[cells[:, first]] & axial[cells[:, (first + 3) % 4]]

@@ -45,9 +45,11 @@ class Look:
 
 
 LOOK = Look()
-_QUARTERS = np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]])
-_HALVES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
-LINEAR = {9: _QUARTERS, 6: _HALVES}  # linear cells into which those of a section are cut, by their nodes
+LINEAR = {
+    9: np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]]),
+    6: np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]),
+}
+"""Linear cells into which those of a section are cut, by their nodes."""
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,7 @@ def _grids(
     """Kind, suffix and grid of each file of a state."""
     cut = cut_for(state.space, state.components, TOLERANCE)
     section = {QUADRATIC[cut.cells.shape[1]]: cut.cells}
-    yield "body", "vtu", _grid(pyvista, section, in_plane(*cut.points), inside(state, cut, scale), units)
+    yield "body", "vtu", _grid(pyvista, section, in_plane(*cut.points), inside(state, cut, scale), units, COMPONENTS)
     yield "contact", "vtp", _surface(pyvista, state, scale, units)
     if revolve is not None:
         coarse = cut_for(state.space, state.components, SOLID_TOLERANCE)
@@ -115,12 +115,7 @@ def _grids(
 
 
 def _grid(
-    pyvista: Any,
-    cells: dict[int, Index],
-    points: Array,
-    arrays: Named,
-    units: Units | None,
-    labels: Labels = COMPONENTS,
+    pyvista: Any, cells: dict[int, Index], points: Array, arrays: Named, units: Units | None, labels: Labels
 ) -> Any:
     kept = {kind: nodes for kind, nodes in cells.items() if len(nodes)}
     return _with_arrays(pyvista.UnstructuredGrid(kept, _placed(points, units)), arrays, units, labels)

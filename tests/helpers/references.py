@@ -13,12 +13,12 @@ from fem_adhesion.elasticity.cells import Cells, cell_quadrature, of_gradient, s
 from fem_adhesion.elasticity.condensation import CondensedBody, surface_operator
 from fem_adhesion.elasticity.exterior import FarField, point_load, with_interiors
 from fem_adhesion.elasticity.reference import reference_functions
-from fem_adhesion.elasticity.space import Space, lame_parameters, scatter, scatter_pairs
+from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.elasticity.surface import boundary_points
 from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
-from halfspace.values import Array
+from halfspace.values import Array, Index
 
 
 def charted_rung(*stages: Charts) -> Rung:
@@ -77,6 +77,13 @@ def taylor_hood(
     rows = T.tocsr()[space.components[1, surface.functions]]
     forces = sparse.vstack([rows.T, sparse.csr_array((volume.shape[0], len(surface.functions)))]).toarray()
     return surface_operator(surface, exterior, rows @ factors.solve(forces)[: T.shape[1]])
+
+
+def scatter_pairs(blocks: Array, row_dofs: Index, column_dofs: Index, shape: tuple[int, int]) -> sparse.csc_array:
+    """Add up (cells, m, n) blocks that couple the (m, cells) unknowns of one space with the (n, cells) of another."""
+    rows = np.broadcast_to(row_dofs.T[:, :, None], blocks.shape).ravel()
+    columns = np.broadcast_to(column_dofs.T[:, None, :], blocks.shape).ravel()
+    return sparse.csc_array((blocks.ravel(), (rows, columns)), shape=shape)
 
 
 def _mixed_matrices(

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from numpy.polynomial.legendre import legvander2d
+from references import scatter_pairs
 from skfem import ElementQuadP
 
 from fem_adhesion.elasticity.cells import Cells, cell_quadrature, of_gradient, pressure_modes, shear_matrix
 from fem_adhesion.elasticity.exterior import clamped, with_interiors
-from fem_adhesion.elasticity.space import Space, scatter, scatter_pairs
+from fem_adhesion.elasticity.space import Space, scatter
 from fem_adhesion.mesh.block import tensor_grid
 
 

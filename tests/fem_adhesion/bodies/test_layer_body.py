@@ -182,7 +182,7 @@ def test_stresses_jump_at_an_interface_where_they_must():
     """What pulls across is continuous; what does not differs by the moduli of the strains that both sides have."""
     scene, event = Scene(1.0, STIFF), traced(Scene(1.0, STIFF), 1e-4).stages[-1]["zero_load"]
     state = fields.state_at(scene, event.problem, event.point)
-    cut = Cut(state.space, Lattice(1, triangular=False), 0.0)
+    cut = Cut(state.space, Lattice(1, triangular=False))
     (r, z), region = cut.points, cut.node_regions
     sides = [np.flatnonzero((np.abs(z + 2) < 1e-9) & (r < 3) & (region == n)) for n in (0, 1)]
     above, below = (side[np.argsort(r[side])] for side in sides)
@@ -214,7 +214,7 @@ def test_stresses_jump_at_an_interface_where_they_must():
 def test_an_interface_is_drawn_and_written():
     scene, event = Scene(1.0, STIFF), traced(Scene(1.0, STIFF), 1e-4).stages[-1]["zero_load"]
     state = fields.state_at(scene, event.problem, event.point)
-    cut, view = Cut(state.space, Lattice(1, triangular=False), 0.0), picture.view_of([state])
+    cut, view = Cut(state.space, Lattice(1, triangular=False)), picture.view_of([state])
     region, heights = inside(state, cut, 1.0)["region"], cut.points[1]
     assert heights[region == 0].min() == heights[region == 1].max() == -2
     (line,) = picture.section(state, view).interfaces

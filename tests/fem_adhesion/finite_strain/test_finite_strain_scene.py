@@ -21,14 +21,14 @@ from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, Question
 from fem_adhesion.finite_strain import scene as finite_strain_scene
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
-from fem_adhesion.finite_strain.scene import FARTHEST, LITTLE, NUMBERS, ScenesBody, Stages, Windows, find_jumps, trace
+from fem_adhesion.finite_strain.scene import FARTHEST, LITTLE, ScenesBody, Stages, Windows, find_jumps, trace
 from fem_adhesion.finite_strain.settings import USUAL
 from fem_adhesion.finite_strain.traction import Convention
 from halfspace.accuracy.standing import Standing
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Chart, metric_for, moved, placed, transfer, undeformed_radius
 from halfspace.equilibrium.conditions import FOLD, Located, relocate
-from halfspace.equilibrium.contact import APPROACH
+from halfspace.equilibrium.contact import APPROACH, OBSERVABLES
 from halfspace.equilibrium.search import energy_released
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.laws import Dlvo, Dugdale
@@ -93,7 +93,7 @@ def test_the_long_way_leads_to_the_same_events(path):
     assert not long.settings["curve"]["linear"]
     assert isinstance(long.segments[0].problem, FiniteStrainProblem)
     for name, event in path.events.items():
-        for number in NUMBERS:
+        for number in OBSERVABLES:
             one, other = event.estimate(number), long.event(name).estimate(number)
             assert np.isnan(one.value) or one.agrees(other), (name, number)
 
