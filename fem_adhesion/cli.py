@@ -10,7 +10,7 @@ from fem_adhesion.assess.command import COMMAND as ASSESS
 from fem_adhesion.benchmark.command import COMMAND as BENCHMARK
 from fem_adhesion.common.files import LEFT, STANDARD, Left, NotWritten
 from fem_adhesion.common.jobs import keep_to_one_thread
-from fem_adhesion.common.options import BAD_INPUT, COMMAND, DISAGREE, NOT_WRITTEN, Parser, ended, ended_by_signal
+from fem_adhesion.common.options import BAD_INPUT, COMMAND, DISAGREE, INTERRUPTED, TERMINATED, Parser, ended_by_signal
 from fem_adhesion.crosscheck.command import COMMAND as COMPARE
 from fem_adhesion.curve.command import COMMAND as CURVE
 from fem_adhesion.finite_sphere.command import COMMAND as FINITE_SPHERE
@@ -58,9 +58,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         return _told(f"{error.name} is not installed; pip install '.[studies]' in a clone", BAD_INPUT)
     except NotWritten as error:
-        return _told(error, NOT_WRITTEN)
+        return _told(error, DISAGREE)
     except KeyboardInterrupt as how:
-        return ended(how, left.kept)
+        word, code = ("terminated", TERMINATED) if how.args else ("interrupted", INTERRUPTED)
+        return _told(f"{word}; {left.kept}", code)
     finally:
         COMMAND.reset(asked)
         LEFT.reset(noted)

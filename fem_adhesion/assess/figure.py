@@ -11,7 +11,7 @@ from fem_adhesion.assess.predictions import Prediction
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.common import style
-from fem_adhesion.common.lines import smooth
+from fem_adhesion.common.lines import Range, smooth
 from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import reaching
@@ -27,7 +27,6 @@ THEORIES: dict[str, dict[str, Any]] = {  # thin and in front, so that what they 
     "DMT-M": {"color": "0.45", "linestyle": style.DOTTED},
     "rigid": {"color": "0.65", "linestyle": "-"},
 }
-Ends = tuple[float, float]
 
 
 def draw(assessment: Assessment) -> Figure:
@@ -70,7 +69,7 @@ def draw(assessment: Assessment) -> Figure:
     return figure
 
 
-def _frame(assessment: Assessment) -> tuple[Ends, Ends]:
+def _frame(assessment: Assessment) -> tuple[Range, Range]:
     """Separations in m and forces in N that are shown: from a little compression to beyond the jump on."""
     units, values = assessment.contact.units, assessment.best.values
     force, jump = values["pull_off_force"].value, values.get("jump_on_separation")

@@ -85,8 +85,7 @@ class Assessment:
     @property
     def models(self) -> tuple[Prediction, ...]:
         """All predictions, the half-space first."""
-        ours = (self.half_space, self.profile, self.finite)
-        return (*(model for model in ours if model is not None), *self.theories)
+        return (*filter(None, (self.half_space, self.profile, self.finite)), *self.theories)
 
     @property
     def parameters(self) -> Mapping[str, float]:

@@ -10,11 +10,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_adhesion.bodies.body import Body, GripName
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.bodies.held import Hemisphere
+from fem_adhesion.common.numbers import Measured
 from fem_adhesion.registry import words_of
 from fem_adhesion.scene import facing_pair
 from halfspace.elastic.layers import Foundation, Layer, Layers
@@ -24,9 +25,6 @@ from halfspace.laws.law import require_law
 from halfspace.limits import LAYER_THICKNESS, require_poisson
 from halfspace.profiles import Profile, require_profile
 from halfspace.scaling import Units, contact_modulus, equivalent_radius, spacing_of
-
-if TYPE_CHECKING:
-    from fem_adhesion.common.numbers import Measured
 
 RIGID = 1e-9  # part of the pair's compliance that stands for none: a rigid sphere is a counter-body all the same
 
@@ -102,8 +100,7 @@ class Contact:
     @cached_property
     def units(self) -> Units:
         """Units of the contact."""
-        other = () if self._other is None else self._other
-        modulus = contact_modulus(self.modulus, self.poisson, *other)
+        modulus = contact_modulus(self.modulus, self.poisson, *(self._other or ()))
         return Units(equivalent_radius(self.radius, self.counter_radius), modulus, self.work_of_adhesion, self.spacing)
 
     @cached_property

@@ -21,8 +21,7 @@ Result = TypeVar("Result")
 
 def versions() -> dict[str, str]:
     """Versions that decide the numbers."""
-    packages = ("fem-adhesion", "numpy", "scipy", "scikit-fem")
-    return {"python": platform.python_version(), **{name: version(name) for name in packages}}
+    return {"python": platform.python_version(), **{name: version(name) for name in ("fem-adhesion", *LIBRARIES)}}
 
 
 def plain(value: object) -> object:

@@ -218,7 +218,6 @@ def require_room(directory: Path, *, force: bool | None = False) -> int | None:
 
 SCHEMA = 2  # raised whenever what is stored changes
 FOLDER = "cases"
-OTHER_CODE, OTHER_FORMAT = "other code", "another format"
 
 Plain = Mapping[str, object]  # what JSON can hold
 
@@ -261,12 +260,12 @@ class Store:
             return None
         match found:
             case {"schema": schema} if schema != SCHEMA:
-                self.outdated[OTHER_FORMAT] += 1
+                self.outdated["another format"] += 1
             case {"inputs": dict(asked), "result": dict(result), "code": str(code), "checksum": str(checksum)}:
                 if asked != dict(inputs) or checksum != _digest([asked, code, result]):
                     self.distrust(inputs, "it has been changed")
                 elif code != self.code:
-                    self.outdated[OTHER_CODE] += 1
+                    self.outdated["other code"] += 1
                 else:
                     return {str(key): value for key, value in result.items()}
             case _:

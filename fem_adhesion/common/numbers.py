@@ -173,9 +173,6 @@ def decade(value: float) -> int:
     return math.floor(math.log10(abs(value))) if value else 0
 
 
-NOTHING = "No numbers were found to tell of."
-
-
 def told(text: str, *numbers: float | Array) -> str:
     """The text, or nothing if a number that it rests on is missing or not finite."""
     known = all(np.size(number) and np.all(np.isfinite(number)) for number in numbers)
@@ -184,7 +181,7 @@ def told(text: str, *numbers: float | Array) -> str:
 
 def joined(*sentences: str) -> str:
     """Sentences that have something to tell, as one paragraph."""
-    return " ".join(filter(None, sentences)) or NOTHING
+    return " ".join(filter(None, sentences)) or "No numbers were found to tell of."
 
 
 def listed(names: Sequence[str]) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import re
 import signal
-import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 AGREE, DISAGREE, BAD_INPUT, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
-NOT_WRITTEN = DISAGREE
 
 
 COMMAND: ContextVar[str] = ContextVar("command", default="")
@@ -66,13 +64,6 @@ def ended_by_signal() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-def ended(how: KeyboardInterrupt, what: str) -> int:
-    """Say in one line that the command was ended from outside, and give its exit code."""
-    word, code = ("terminated", TERMINATED) if how.args else ("interrupted", INTERRUPTED)
-    print(f"fem-adhesion: {word}; {what}", file=sys.stderr)
-    return code
 
 
 class Parser(argparse.ArgumentParser):
@@ -179,9 +170,6 @@ def add_workers(command: Parser) -> None:
     command.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
 
 
-TABLES = ("csv", "stress")  # outputs that are tables
-
-
 def require_distinct(*paths: Path | None) -> None:
     """Refuse two outputs under one name."""
     seen: set[Path] = set()
@@ -201,7 +189,7 @@ def all_written(**paths: Path | None) -> Iterator[dict[str, TextIO]]:
     """
     require_distinct(*paths.values())
     given = {name: path for name, path in paths.items() if path}
-    if tables := {name: given[name] for name in TABLES if given.get(name, STANDARD) != STANDARD}:
+    if tables := {name: given[name] for name in ("csv", "stress") if given.get(name, STANDARD) != STANDARD}:
         from fem_adhesion.common.record import beside
 
         given |= {f"{name} record": beside(table) for name, table in tables.items()}

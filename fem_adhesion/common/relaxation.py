@@ -15,7 +15,6 @@ import numpy as np
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, ContactProblem
 from halfspace.equilibrium.newton import Control
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import Law
 from halfspace.values import Array, Valued
 
 
@@ -105,7 +104,17 @@ def greenwood(
     columns = changes.T.copy()
 
     def sweep() -> None:
-        _correct_each(P, given + C @ P, columns, law, tabor, relaxation)
+        """Local corrections, in place; each node sees those before it."""
+        H = given + C @ P
+        for i, column in enumerate(columns):
+            gap = max(H[i], USUAL.closest)
+            change = relaxation * (law.pressure(gap, tabor) - P[i]) / (1 - law.slope(gap, tabor) * column[i])
+            P[i] += change
+            if i > 0:
+                P[i - 1] -= change / 2
+            if i < P.size - 1:
+                P[i + 1] -= change / 2
+            H += change * column
 
     def state() -> State:
         H = given + C @ P
@@ -129,20 +138,6 @@ def _gaps_under(problem: ContactProblem, control: Control) -> tuple[Array, Array
     if np.array_equal(control.weights, np.eye(4)[CENTRAL_GAP]):
         return undeformed + control.target, C - body.axis_row @ C  # on the axis the undeformed one is zero
     raise InputError("the 1997 iterations work under newton.approach or newton.central_gap only; take newton.solve")
-
-
-def _correct_each(P: Array, H: Array, columns: Array, law: Law, tabor: float, relaxation: float) -> None:
-    """One sweep of local corrections, in place; each node sees those before it."""
-    last = P.size - 1
-    for i, column in enumerate(columns):
-        gap = max(H[i], USUAL.closest)
-        change = relaxation * (law.pressure(gap, tabor) - P[i]) / (1 - law.slope(gap, tabor) * column[i])
-        P[i] += change
-        if i > 0:
-            P[i - 1] -= change / 2
-        if i < last:
-            P[i + 1] -= change / 2
-        H += change * column
 
 
 State = tuple[Array, Array, float]

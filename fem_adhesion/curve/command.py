@@ -104,7 +104,8 @@ def run(options: argparse.Namespace) -> int:
             from fem_adhesion.fields import states_along
             from fem_adhesion.paraview.write import write_states
 
-            states = states_along(question.scene, curves.path, points=_points(options))
+            points = USUAL.inside if options.points is None else options.points
+            states = states_along(question.scene, curves.path, points=points)
             write_states(states, fields, options.vtk, units=question.units, revolve=options.revolve)
     console = console_beside(options.json, options.csv, outputs["stress"])
     terminal.show(curves, console)
@@ -152,10 +153,6 @@ def _write(
             pictures.write_movie(curves, files["movie"])
 
 
-def _points(options: argparse.Namespace) -> int:
-    return USUAL.inside if options.points is None else int(options.points)
-
-
 def _question(options: argparse.Namespace) -> Question:
     """What is asked, with nothing given that would not be heeded."""
     from fem_adhesion.curve.solve import Question
@@ -200,7 +197,7 @@ def _require_inside(options: argparse.Namespace, scene: Scene, solver: SolverNam
         from fem_adhesion.paraview.cells import require_angle
         from fem_adhesion.paraview.write import require_pyvista
 
-        if _points(options) < 0:
+        if (options.points or 0) < 0:
             raise InputError(f"points = {options.points} is outside 0 <= points; 0 writes the events only")
         if options.revolve is not None:
             require_angle(options.revolve)

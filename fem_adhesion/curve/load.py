@@ -37,8 +37,6 @@ LEGEND = {"fontsize": 8, "handlelength": 3.2, "framealpha": 0.9, "edgecolor": "n
 GRIPS: dict[str, Any] = {"color": "black", "linestyle": "-"}
 APPARATUS: dict[str, Any] = {"color": style.GREEN, "linestyle": "-"}
 
-Ends = tuple[float, float]
-
 
 @dataclass(frozen=True)
 class Look:
@@ -161,7 +159,7 @@ def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
         axes.axline(at, slope=down / across, **line)
 
 
-def _clipped(tail: Ends, head: Ends, frame: Frame) -> tuple[Ends, Ends] | None:
+def _clipped(tail: style.Point, head: style.Point, frame: Frame) -> tuple[style.Point, style.Point] | None:
     """Ends of the part of an arrow that is inside the frame, or None if it is outside."""
     first, last = 0.0, 1.0
     for start, end, (low, high) in zip(tail, head, (frame.approach, frame.load), strict=True):

@@ -187,9 +187,9 @@ def _neo_hookean(case: SphereCase, traction: TractionName) -> Scene:
     return hemisphere(case).made_of(NeoHookean(case.given("poisson"), traction))
 
 
-def _finite_strain(case: SphereCase, traction: TractionName, tightest: float = 1e-4) -> Values:
+def _finite_strain(case: SphereCase, traction: TractionName) -> Values:
     """A neo-Hookean hemisphere: pull-off and jumps only; a finer tolerance is dear, and the effect is some beta/R."""
-    events = find_jumps(_neo_hookean(case, traction), max(case.rtol, tightest))
+    events = find_jumps(_neo_hookean(case, traction), max(case.rtol, 1e-4))
     return {"pull_off_load": events["pull_off"].estimate("load")} | _jumps(events)
 
 

@@ -85,7 +85,7 @@ Finding = tuple[str, str, float | None, Fit | Unsolved]
 """Cause, quantity and Tabor parameter of a deviation, None for all, and its leading terms, or why there are none."""
 
 
-def findings(rows: Sequence[DeviationRow], poisson: float = 0.3) -> Iterator[Finding]:
+def findings(rows: Sequence[DeviationRow], poisson: float) -> Iterator[Finding]:
     """Fits of every quantity for every cause, at all Tabor parameters together and at each."""
     keys = dict.fromkeys((row.cause, row.quantity, row.poisson) for row in rows if row.poisson in (None, poisson))
     for cause, quantity, nu in keys:

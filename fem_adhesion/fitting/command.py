@@ -38,7 +38,6 @@ MEASURED = {
     "sensitivity": ("S", "true deflection over the recorded one; 1 unless given"),
     "compliance": ("C", "of anything else that bends in series with the cantilever, as 0.5m/N; none unless given"),
 }
-FREE = "free"
 STARTS = {"radius": 20e-9, "modulus": 10e9, "stiffness": 0.1, "sensitivity": 1.0, "compliance": 0.0}
 """Where a free quantity starts."""
 
@@ -159,7 +158,7 @@ def quantity(text: str, name: str) -> Measured:
     """Quantity that is exact, has a standard error, or is free."""
     from fem_adhesion.common.numbers import Measured, measured
 
-    if text == FREE:
+    if text == "free":
         return Measured(STARTS[name], math.inf)
     return measured(text, name)
 

@@ -138,8 +138,8 @@ class Data:
                 runs.append(run)
                 continue
             z, turn = self.travel[run.samples], found.place(run.segment)
-            order = (found.contact, found.separated) if run.segment else (found.separated, found.contact)
-            first, then = (np.interp(z, *branch) for branch in order)
+            names = ("contact", "separated") if run.segment else ("separated", "contact")
+            first, then = (np.interp(z, *getattr(found, name)) for name in names)
             size = abs(float(np.interp(turn, *found.contact) - np.interp(turn, *found.separated)))
             step = float(np.median(np.abs(np.diff(z))))
             error = step * math.hypot(math.sqrt(1 / 12), math.sqrt(26) * (noise / size) ** 2)
@@ -147,7 +147,6 @@ class Data:
             between = (z[1:] + z[:-1]) / 2
             off = ((between - turn) / error) ** 2 * (not loose)
             i = int(np.argmin((np.cumsum(gain) - gain + off)[FEW:-FEW])) + FEW + 1
-            names = ("contact", "separated") if run.segment else ("separated", "contact")
             start, stop = run.samples.start, run.samples.stop
             parts = slice(start, start + i), slice(start + i, stop)
             runs += [Run(run.segment, branch, part) for branch, part in zip(names, parts, strict=True)]

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 
 from jinja2 import StrictUndefined, Template
 
 from fem_adhesion.common.files import written_aside
+from fem_adhesion.common.page import template_text
+from fem_adhesion.fitting.traced import SPACING, WORK
 from halfspace.errors import InputError
-
-SPACING = 0.3e-9  # m, an atom's diameter
-WORK_OF_ADHESION = 0.05  # J/m^2, of van der Waals' solids in air
 
 
 def write(
@@ -21,7 +19,7 @@ def write(
     radius: float,
     modulus: float,
     poisson: float,
-    work_of_adhesion: float = WORK_OF_ADHESION,
+    work_of_adhesion: float = WORK,
     spacing: float = SPACING,
 ) -> None:
     """Write the module; the quantities, in SI, are where its fits start.
@@ -30,10 +28,9 @@ def write(
     """
     if path.suffix != ".py" or not path.stem.isidentifier():
         raise InputError(f"{path} cannot be imported, limit: a name of letters, digits and _, then .py; rename it")
-    template = files("fem_adhesion.fitting").joinpath("templates", "nanite.py.txt").read_text(encoding="utf-8")
     values = {"radius": radius, "modulus": modulus, "poisson": poisson}
     values |= {"work_of_adhesion": work_of_adhesion, "spacing": spacing}
-    made = Template(template, undefined=StrictUndefined, keep_trailing_newline=True)
+    made = Template(template_text("fitting", "nanite.py.txt"), undefined=StrictUndefined, keep_trailing_newline=True)
     text = made.render(version=version("fem-adhesion"), **{name: f"{value:.12g}" for name, value in values.items()})
     with written_aside(path) as file:
         file.write(text)

@@ -187,23 +187,20 @@ def fit(
     nominal = stiffness.value if isinstance(stiffness, Measured) else stiffness
     if not isinstance(curve, ForceCurve):
         curve = read(Path(curve), stiffness=nominal)
-    if stiffness is None:
-        stiffness = curve.stiffness
+    stiffness = curve.stiffness if stiffness is None else stiffness
     if stiffness is None:
         raise InputError("stiffness = None, limit: a spring; give it, as 0.2N/m")
     named = {"radius": radius, "modulus": modulus, "stiffness": stiffness}
     named |= {"sensitivity": sensitivity, "compliance": compliance}
     given = {name: each if isinstance(each, Measured) else Measured(each) for name, each in named.items()}
     for name, one in given.items():
-        _require_within(name, one.value)
+        least, most = LIMITS.get(name, (0.0, math.inf))
+        if not (least < one.value < most or (name == "compliance" and one.value == 0)):
+            raise InputError(f"{name} = {one.value:g} is outside {least:g} < {name} < {most:g}; check its unit")
     if (counter_modulus is None) != (counter_poisson is None):
         raise InputError("counter_modulus without counter_poisson, limit: both or none; give the other too")
-    other = Other(
-        require_poisson(poisson),
-        math.inf if counter_modulus is None else counter_modulus,
-        0.0 if counter_poisson is None else counter_poisson,
-        math.inf if counter_radius is None else counter_radius,
-    )
+    counter = {"counter_modulus": counter_modulus, "counter_poisson": counter_poisson, "counter_radius": counter_radius}
+    other = Other(require_poisson(poisson), **{name: value for name, value in counter.items() if value is not None})
     for name in models:
         if name not in THEORIES:
             Traced(name, other.poisson).require(given["radius"].value, counter=counter_modulus or counter_radius)
@@ -215,12 +212,6 @@ def fit(
     found, unsolved = _profiles(named_models, prepared, given, other, in_turn(progress, len(named_models)))
     atlas = found[ATLAS]
     return Fit(prepared, values_of(atlas), atlas, _candidates(found), _branches(atlas.best), unsolved)
-
-
-def _require_within(name: str, value: float) -> None:
-    least, most = LIMITS.get(name, (0.0, math.inf))
-    if not (least < value < most or (name == "compliance" and value == 0)):
-        raise InputError(f"{name} = {value:g} is outside {least:g} < {name} < {most:g}; check its unit")
 
 
 def _profiles(

@@ -67,7 +67,6 @@ def _models(fit: Fit) -> Fitted:
 
 def record(fit: Fit) -> dict[str, Any]:
     """A fit as plain data."""
-    degrees = fit.best.degrees
     return {
         **told(fit.values),
         "model": fit.model,
@@ -78,7 +77,7 @@ def record(fit: Fit) -> dict[str, Any]:
         "misfit": {
             "found": fit.misfit,
             "chi2": fit.best.chi2,
-            "degrees": degrees,
+            "degrees": fit.best.degrees,
             "branches": plain([vars(part) for part in fit.branches]),
         },
         "contour": plain(dict(zip(("work_of_adhesion", "spacing"), fit.contour, strict=True))),

@@ -24,7 +24,7 @@ from halfspace.values import Array
 
 KINDS = ("law", "profile", "body")
 RTOL = 1e-4  # of the traces
-WORK, SPACING = 0.05, 0.3e-9  # J/m^2 and m, usual ones
+WORK, SPACING = 0.05, 0.3e-9  # J/m^2 of van der Waals' solids in air, m of an atom's diameter
 SAME = 1e-3  # arclength between states that are one
 PLACES = 1600  # on the spline through the states of a path: loads err by 0.03 R dgamma at most
 

@@ -153,8 +153,7 @@ def open_end(fit: Fit, name: str, value: Value) -> str:
     low, high = value.low, value.high
     if low is None and high is None:
         return f"{why}{NAMES[name]} is not identified at all."
-    side, end = ("below", high) if low is None else ("above", low)
-    bound = "above" if low is None else "below"
+    bound, side, end = ("above", "below", high) if low is None else ("below", "above", low)
     return f"{why}{NAMES[name]} is bounded {bound} only: {side} {sized(end or 0.0, value.unit)} at 95 %."
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from fem_adhesion.common.options import AGREE, Command, Parser, add_output
+from fem_adhesion.common.options import AGREE, Command, add_output
 
 
 def run(options: argparse.Namespace) -> int:
@@ -17,11 +17,6 @@ def run(options: argparse.Namespace) -> int:
     return AGREE
 
 
-def add_options(command: Parser) -> None:
-    """Add the options."""
-    add_output(command)
-
-
 COMMAND = Command(
     "formulas",
     "write closed expressions for other codes, in Python, C, Fortran, Markdown and LaTeX",
@@ -29,6 +24,6 @@ COMMAND = Command(
     "a cycle and the load at an approach, down to tear-off, at any Tabor parameter, each with its worst error, and the "
     "conventions of six codes with functions that convert theirs.",
     "--out formulas",
-    add_options,
+    add_output,
     run,
 )

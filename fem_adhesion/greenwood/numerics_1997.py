@@ -97,12 +97,11 @@ def false_rise(
     *,
     window: float = 2.0,
     steps: int = 12,
-    enough: float = -7.5,
 ) -> tuple[Ripple, ...]:
     """Pull-off at rising Tabor parameters on one spacing, until the rise is proved or the grid has no solution.
 
     The window is in spacings: the period of the ripple is one. Only the least load matters, so that a dozen steps of
-    the contact radius to a spacing do. A load below `enough`, in R dgamma, proves the rise.
+    the contact radius to a spacing do. A load below -7.5 R dgamma proves the rise.
     """
     found: list[Ripple] = []
     for path in paths:
@@ -110,7 +109,7 @@ def false_rise(
         if isinstance(uneven, Unsolved):
             break
         found.append(uneven)
-        if uneven.pull_off < enough:
+        if uneven.pull_off < -7.5:
             break
     return tuple(found)
 
@@ -137,18 +136,14 @@ class Attempt:
     newton_seconds: float
 
 
-def attempts(
-    most_sweeps: int,
-    tabors: Sequence[float] = (0.05, 0.2, 0.5, 1.0, 2.0, 3.0),
-    slow: Sequence[float] = (0.05, 1.0, 3.0),
-) -> Iterator[Attempt]:
+def attempts(most_sweeps: int) -> Iterator[Attempt]:
     """Each iteration at several Tabor parameters; Greenwood's, which may take `most_sweeps`, at a few, for its time."""
     every: dict[str, Iteration] = {
         f"simple relaxation, c = {c:g}": partial(relaxation.simple, control=CONTACT, relaxation=c)
         for c in (0.05, 0.005)
     }
     greenwood = partial(relaxation.greenwood, control=CONTACT, relaxation=1.5, tolerance=1e-5, most_sweeps=most_sweeps)
-    for tabor in tabors:
+    for tabor in (0.05, 0.2, 0.5, 1.0, 2.0, 3.0):
         outer = EXTENT / np.sqrt(min(tabor, 1.0))
         problem = ContactProblem(compliance.triangles(grid.uniform(outer, outer / (NODES - 1))), tabor)
         began = time.perf_counter()
@@ -156,7 +151,8 @@ def attempts(
         spent, load = time.perf_counter() - began, float(solution.observables[LOAD])
         start = problem.undeformed(1.0)
         start[:-2] = np.maximum(start[:-2], 0.0)
-        for name, iterate in (every | ({"Greenwood's, relaxation 1.5": greenwood} if tabor in slow else {})).items():
+        slow: dict[str, Iteration] = {"Greenwood's, relaxation 1.5": greenwood} if tabor in (0.05, 1.0, 3.0) else {}
+        for name, iterate in (every | slow).items():
             began, found = time.perf_counter(), tried(iterate, problem, start)
             if isinstance(found, Unsolved):
                 sweeps, outcome = None, found.reason

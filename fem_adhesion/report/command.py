@@ -45,8 +45,7 @@ def run(options: argparse.Namespace) -> int:
     require_rtol(options.rtol)
     scenes = [Scene(tabor=tabor) for tabor in options.tabor]
     question = solve.Question(Scene(options.walk), "both", options.rtol)
-    named = {name: getattr(options, name.replace("-", "_")) for name in STUDIES}
-    directories = {name: directory for name, directory in named.items() if directory is not None}
+    directories = {name: place for name in STUDIES if (place := getattr(options, name.replace("-", "_")))}
     for name, directory in directories.items():
         section_of(name, directory)  # refuse a directory before any work
     if options.fit:

@@ -17,8 +17,6 @@ from fem_adhesion.common.lines import UNSTABLE, smooth
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.curve.stress import values_at
 from fem_adhesion.fields import State, half_space_beside, states_along
-from fem_adhesion.scene import Scene
-from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import usual
 from halfspace.errors import tried
 from halfspace.values import Array, Valued
@@ -56,8 +54,6 @@ class Walk(Valued):
     Radii (n,) of the profiles and places (m,) of the points on the lines inside the body are in beta.
     """
 
-    scene: Scene
-    path: EquilibriumPath
     radii: Array
     places: Array
     stations: tuple[Station, ...]
@@ -77,7 +73,7 @@ def walk(curves: Curves, *, states: int | None = None, progress: Progress = unhe
     for number, state in enumerate(states_along(scene, path, points=states, how=SEEN)):
         progress("states along the curve", number, total)
         stations.append(_station(state, radii, places))
-    return Walk(scene, path, radii, places, tuple(stations))
+    return Walk(radii, places, tuple(stations))
 
 
 def _station(state: State, radii: Array, places: Array) -> Station:
@@ -130,5 +126,5 @@ def walk_data(walk: Walk, curves: Curves) -> str:
         "stations": [asdict(station) | {"name": station.name.replace("_", " ")} for station in walk.stations],
     }
     rounded = json.loads(json.dumps(plain(drawn)), parse_float=lambda text: float(f"{float(text):.5g}"))
-    data = {"tabor": walk.scene.tabor, "depths": LINES, "between": BETWEEN, **rounded}
+    data = {"tabor": curves.question.scene.tabor, "depths": LINES, "between": BETWEEN, **rounded}
     return json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")

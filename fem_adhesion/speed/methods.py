@@ -18,8 +18,6 @@ from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, Elemen
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.bodies.body import Body
-from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.common import relaxation
 from fem_adhesion.common.page import data_text
 from fem_adhesion.common.relaxation import Relaxed
@@ -44,7 +42,7 @@ from halfspace.theories.closed_forms import jkr_radius
 from halfspace.values import Array, Estimate
 
 QUANTITIES = ("pull_off", "jump_on", "hysteresis")
-POISSON = 0.3  # of the finite elements
+POISSON = 0.3  # of the finite elements, a scene's own
 
 Family = Literal["half-space", "finite elements"]
 Variant = Literal["", "clamped", "monolithic"]
@@ -84,18 +82,6 @@ class Method:
         """Unique name."""
         prefix = "FE " if self.family == "finite elements" else ""
         return f"{prefix}{self.basis}" + (f", {self.variant}" if self.variant else "")
-
-    def ladder(self, *, quick: bool) -> Sequence[Step]:
-        """Rungs to climb."""
-        return self.steps[: self.quick] if quick else self.steps
-
-
-HALF_SPACE_BODY = HalfSpace(poisson=POISSON)
-
-
-def trace_elements(tabor: float, rtol: float, body: Body = HALF_SPACE_BODY) -> EquilibriumPath:
-    """Curve of a body, a half-space unless given, by finite elements with error control."""
-    return convergence.trace(Scene(tabor, body), rtol=rtol)
 
 
 def estimates(path: EquilibriumPath) -> dict[str, Estimate]:
@@ -253,7 +239,7 @@ def _solver(family: Family, basis: str, variant: Variant) -> Callable[..., Solve
     if basis in ELEMENTS:
         return partial(_on_disc, ELEMENTS[basis], solve=SOLVERS[variant])
     if (basis, variant) == ("hp", ""):
-        return lambda tabor, rtol: _adaptive(trace_elements(tabor, rtol))
+        return lambda tabor, rtol: _adaptive(convergence.trace(Scene(tabor), rtol=rtol))
     return partial(_on_block, solve=SOLVERS[variant])
 
 

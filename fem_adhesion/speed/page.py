@@ -20,7 +20,7 @@ from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.page import Columns, Item, Table, markdown, said, write_csv
 from fem_adhesion.common.record import lines_of
 from fem_adhesion.common.style import Picture, captions, draw
-from fem_adhesion.speed.methods import QUANTITIES, Family, Method
+from fem_adhesion.speed.methods import QUANTITIES, Method
 from fem_adhesion.speed.study import (
     EXPONENTS,
     RTOL,
@@ -35,7 +35,6 @@ from fem_adhesion.speed.study import (
 )
 from halfspace.errors import InputError
 
-FAMILIES: tuple[Family, ...] = ("half-space", "finite elements")
 COLOURS = (style.ORANGE, style.SKY, style.GREEN, style.BLUE, style.RED, style.PINK)
 STYLES = tuple(zip(COLOURS, "XPs^vD", strict=True))  # of the bases of a family; black dots are adaptive
 LINES = {"": "-", "clamped": "--", "monolithic": ":"}
@@ -74,7 +73,7 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
             seconds = [unit * rung.seconds for rung in known]
             axes.loglog(seconds, [low * rung.error(quantity) for rung in known], label=label, **look)
 
-    for axes, family in zip(panels, FAMILIES, strict=True):
+    for axes, family in zip(panels, study.truths, strict=True):
         draw_rungs(axes, pareto_front(study.rungs, quantity), "Pareto front, all methods", **FRONT)
         if study.earlier:
             front = pareto_front(study.earlier[1], quantity)

@@ -23,10 +23,12 @@ import numpy as np
 from scipy.linalg.lapack import dgesv
 
 import halfspace
+from fem_adhesion import convergence
 from fem_adhesion.bodies.held import Hemisphere
 from fem_adhesion.common.facts import with_peak_memory
 from fem_adhesion.common.jobs import Progress, unheard
-from fem_adhesion.speed.methods import POISSON, QUANTITIES, Family, Method, Step, all_methods, estimates, trace_elements
+from fem_adhesion.scene import Scene
+from fem_adhesion.speed.methods import POISSON, QUANTITIES, Family, Method, Step, all_methods, estimates
 from halfspace.errors import GridTooCoarse, InputError, NotConverged, Unsolved, tried
 from halfspace.limits import require_between
 from halfspace.values import Array, Estimate
@@ -256,14 +258,15 @@ def measure(
     for number, method in enumerate(chosen):
         progress(method.name, number, len(chosen))
         truth = truths[method.family]
-        for rung, step in enumerate(method.ladder(quick=quick)):
+        for rung, step in enumerate(method.steps[: method.quick if quick else None]):
             # Those of the quick ladder, which are cheap, are timed once more, warm, in the full study.
             rungs.append(_run(method.name, step, tabor, truth, again=not quick and rung < method.quick))
     progress("how time grows", len(chosen), len(chosen))
-    few = slice(2 if quick else None)
-    chosen_growths = GROWTHS if growths is None else growths
-    found = tuple(timed(replace(growth, at=growth.at[few]), _seconds) for growth in chosen_growths)
-    return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs), found, earlier)
+    found = []
+    for growth in GROWTHS if growths is None else growths:
+        at = growth.at[:2] if quick else growth.at
+        found.append(replace(growth, at=at, seconds=tuple(_seconds(partial(growth.solve, x)) for x in at)))
+    return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs), tuple(found), earlier)
 
 
 def require_tabor(tabor: float) -> float:
@@ -273,7 +276,7 @@ def require_tabor(tabor: float) -> float:
 
 def find_truths(tabor: float) -> dict[Family, Truth]:
     """What each family is judged by: the other one at its tightest tolerance, with its own uncertainties."""
-    half_space, elements = halfspace.trace(tabor, rtol=TIGHTEST), trace_elements(tabor, TIGHTEST)
+    half_space, elements = halfspace.trace(tabor, rtol=TIGHTEST), convergence.trace(Scene(tabor), rtol=TIGHTEST)
     return {
         "half-space": Truth("finite elements", TIGHTEST, estimates(elements), elements.approach_scale),
         "finite elements": Truth("half-space", TIGHTEST, estimates(half_space), half_space.approach_scale),
@@ -319,19 +322,14 @@ def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) ->
 DIGITS = tuple(map(float, range(3, 9)))
 GROWTHS = (
     Growth("half-space", "digits", 3.0, DIGITS, lambda x: halfspace.trace(TABOR, rtol=10.0**-x)),
-    Growth("finite elements", "digits", 6.0, DIGITS, lambda x: trace_elements(TABOR, 10.0**-x)),
+    Growth("finite elements", "digits", 6.0, DIGITS, lambda x: convergence.trace(Scene(TABOR), rtol=10.0**-x)),
     Growth("half-space", "mu", 0.0, (1.0, 3.0, 10.0, 30.0, 100.0), lambda x: halfspace.trace(x, rtol=RTOL)),
-    Growth("finite elements", "mu", 0.0, (1.0, 3.0, 10.0, 30.0), lambda x: trace_elements(x, RTOL)),
+    Growth("finite elements", "mu", 0.0, (1.0, 3.0, 10.0, 30.0), lambda x: convergence.trace(Scene(x), rtol=RTOL)),
     Growth(
         "hemisphere",
         "R/eps",
         0.0,
         (10.0, 100.0, 1e3, 1e4),
-        lambda x: trace_elements(TABOR, RTOL, Hemisphere(radius_ratio=x, poisson=POISSON)),
+        lambda x: convergence.trace(Scene(TABOR, Hemisphere(radius_ratio=x, poisson=POISSON)), rtol=RTOL),
     ),
 )
-
-
-def timed(growth: Growth, seconds_of: Callable[[Callable[[], object]], float]) -> Growth:
-    """Time a growth at each of its values."""
-    return replace(growth, seconds=tuple(seconds_of(partial(growth.solve, x)) for x in growth.at))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 from fem_adhesion.common.files import STANDARD
 from fem_adhesion.common.jobs import progress_bar
@@ -21,10 +22,6 @@ from fem_adhesion.common.options import (
 )
 from fem_adhesion.common.scene_options import add_law, law_of
 from halfspace.errors import InputError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
 
 MOST = 10**5  # Tabor parameters of one FROM:TO:COUNT: over seven decades neighbours then differ by 2e-4
 

@@ -100,7 +100,7 @@ def test_sections_not_computed_say_how_to(html):
 
 def test_the_stations_of_a_walk_balance(contents):
     """Both solvers' profiles agree, and the surface rises by what closes the gap: H = -alpha* + mu u^2/2 - rise."""
-    walked, mu = contents.walk, contents.walk.scene.tabor
+    walked, mu = contents.walk, contents.curves.question.scene.tabor
     for station in walked.stations[::3]:
         elements, half_space = station.pressure
         assert elements == pytest.approx(half_space, abs=2e-2)
@@ -271,7 +271,7 @@ def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, content
 
 def test_each_number_of_a_station_stands_under_its_name(contents, html):
     walked = contents.walk
-    shown, path = data_of(html)["stations"], walked.path
+    shown, path = data_of(html)["stations"], contents.curves.path
     assert {one["name"] for one in shown} == {"", *(name.replace("_", " ") for name in path.events)}
     stable = dict(zip(path.arclength.tolist(), path.stable.tolist(), strict=True))
     for one, station in zip(shown, walked.stations, strict=True):
@@ -279,7 +279,7 @@ def test_each_number_of_a_station_stands_under_its_name(contents, html):
         for name in ("arclength", "approach", "load", "central_gap"):
             assert one[name] == pytest.approx(getattr(station, name), rel=1e-4)
         assert (one["contact_radius"] is None) == np.isnan(station.contact_radius)
-    told = walked.path.central_gap_error.max()  # gaps are drawn by polynomials in the radius, the central one is not
+    told = path.central_gap_error.max()  # gaps are drawn by polynomials in the radius, the central one is not
     for station in walked.stations:  # the gap on the axis, and the contact radius where the tension is largest
         assert station.gap[0][0] == pytest.approx(station.central_gap, abs=told)
         if not np.isnan(station.contact_radius):
@@ -288,7 +288,7 @@ def test_each_number_of_a_station_stands_under_its_name(contents, html):
 
 
 def test_profiles_are_of_elements_then_of_the_half_space(contents, monkeypatch):
-    path = contents.walk.path
+    path = contents.curves.path
     found = path.stages[-1]["pull_off"]
     state = state_at(Scene(2.0), found.problem, found.point, how=SEEN)
     other = Beside(np.full(state.surface.radii.size, 7.0), np.full(state.surface.radii.size, 9.0), np.zeros(4))
