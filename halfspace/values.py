@@ -104,7 +104,8 @@ class States(Valued):
     central_gap, central_gap_error : array
         H(0) in eps.
     contact_radius, contact_radius_error : array
-        In beta, of the edge where the tension is largest, H = 3^(1/6) - 1 by the 3-9 law; nan if H(0) exceeds that.
+        In beta, of the edge where the tension is largest, H = 3^(1/6) - 1 by the 3-9 law; nan if H(0) exceeds that,
+        its error then infinite if that of H(0) leaves it open.
     """
 
     approach: Array

@@ -199,7 +199,7 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
         known, both = event.estimate(quantity), (getattr(a, quantity, None), getattr(b, quantity, None))
         if not all(value is not None and math.isnan(value) for value in (*both, known.value)):
             ripples = (_ripple(a), _ripple(b)) if quantity == "central_gap" else (0.0, 0.0)
-            size = USUAL.pointwise * (1 + abs(known.value))
+            size = USUAL.pointwise * (1 + abs(np.nan_to_num(known.value)))
             yield Compared(f"{name} {quantity}", unit, both, known, size, ripples)
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
     smooth, sharp = name == "jump_on", sharpness(scene, radius) > USUAL.sharp

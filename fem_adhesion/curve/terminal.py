@@ -83,7 +83,7 @@ def _cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> I
     for name in OBSERVABLES:
         found = event.estimate(name)
         if np.isnan(found.value):
-            yield "-"
+            yield "-" if np.isnan(found.error) else "?"
         elif abs(found.value) <= found.error < np.inf:
             yield "0"
         else:
@@ -107,9 +107,11 @@ def notes(curves: Curves) -> Iterator[str]:
     if any(missed for *_, missed in _rows(curves)):
         size = "of eps and the range of all approaches"
         yield f"{MISSED}: the error is above rtol = {curves.question.rtol:g} of the load, of an approach {size}."
+    radii = [event.estimate("contact_radius") for *_, event, _ in _rows(curves)]
+    is_open = any(np.isnan(radius.value) and np.isinf(radius.error) for radius in radii)
     yield (
         "In brackets: error of the last digit. Compression and approach are positive. Contact radius: "
-        f"{edge_told(curves.question.scene.law)}; -: no contact."
+        f"{edge_told(curves.question.scene.law)}; -: no contact{'; ?: open whether there is any' * is_open}."
     )
 
 

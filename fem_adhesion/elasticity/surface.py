@@ -96,14 +96,15 @@ def boundary_points(space: Space, name: str, points: int) -> BoundaryPoints:
     rates = np.einsum("nifk,if->nfk", slopes, along) * -outwards / lengths
     functions, dofs = space.boundary_functions(name), np.asarray(space.scalar_dofs.element_dofs)[:, cells]
     places, radii = np.asarray(mapping.F(Y, tind=cells)), np.sort(mesh.p[0, np.unique(vertices)])
-    rows = _rows(values, dofs, functions), _rows(rates, dofs, functions)
+    rows = _rows(dofs, functions, values, rates)
     return BoundaryPoints(places, normals, lengths * weights, radii, functions, *rows)
 
 
-def _rows(values: Array, dofs: Index, functions: Index) -> sparse.csr_array:
-    """Rows of the values (n, facets, k) of the unknowns dofs (n, facets), for some functions."""
-    k, found = values.shape[2], np.isin(dofs, functions)
-    columns = np.broadcast_to(np.searchsorted(functions, dofs)[:, :, None], values.shape)
-    rows = np.broadcast_to(np.arange(values[0].size).reshape(-1, k), values.shape)
-    entries = values[found].ravel(), (rows[found].ravel(), columns[found].ravel())
-    return sparse.csr_array(entries, shape=(values[0].size, len(functions)))
+def _rows(dofs: Index, functions: Index, *arrays: Array) -> list[sparse.csr_array]:
+    """Rows of arrays of values (n, facets, k) of the unknowns dofs (n, facets), for some functions."""
+    shape, found = arrays[0].shape, np.isin(dofs, functions)
+    columns = np.broadcast_to(np.searchsorted(functions, dofs)[:, :, None], shape)[found].ravel()
+    points = shape[1] * shape[2]
+    rows = np.broadcast_to(np.arange(points).reshape(shape[1:]), shape)[found].ravel()
+    size = points, len(functions)
+    return [sparse.csr_array((values[found].ravel(), (rows, columns)), shape=size) for values in arrays]

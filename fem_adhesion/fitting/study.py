@@ -26,7 +26,7 @@ from halfspace.errors import InputError, Unsolved, tried
 from halfspace.limits import require_poisson
 from halfspace.values import Array
 
-TABORS = tuple(np.geomspace(STIFFEST, SOFTEST, 17))  # of first fits; by steps of 10 8 of 200 curves lost their minimum
+TABORS = tuple(np.geomspace(STIFFEST, SOFTEST, 17))  # of first fits: tenfold steps lost 8 minima of 200 curves
 TRACED = STIFFEST, 100.0  # least and largest Tabor parameter to which traced models are followed
 STRAYED = 5.0  # standard errors from what was known at which a quantity makes up for a wrong model, and is held
 CLEAR = 6.0  # difference of Akaike's criterion from which one model is clearly preferred: a likelihood ratio of 20
@@ -42,7 +42,7 @@ UNITS: Mapping[str, str] = {
     "compliance": "m/N",
 }
 """Parameters and their units in SI."""
-LIMITS = {"sensitivity": (0.1, 10.0), "radius": (ATOM, math.inf)}  # beyond, a wrong unit is likelier
+LIMITS = {"sensitivity": (0.1, 10.0), "radius": (ATOM, math.inf)}  # others: positive; a unit may be wrong
 MEDIAN = float(norm.isf(0.25))  # size of a normal error, in its standard deviation
 WHITE = 1e-3  # chance below which residuals are no noise
 

@@ -42,7 +42,7 @@ from halfspace.theories.closed_forms import jkr_radius
 from halfspace.values import Array, Estimate
 
 QUANTITIES = ("pull_off", "jump_on", "hysteresis")
-POISSON = 0.3  # of the finite elements, a scene's own
+POISSON = Scene(1.0).poisson  # of the finite elements
 
 Family = Literal["half-space", "finite elements"]
 Variant = Literal["", "clamped", "monolithic"]

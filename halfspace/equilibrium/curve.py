@@ -148,7 +148,7 @@ class EquilibriumPath(WithEvents, Valued):
 
     @property
     def contact_radius_error(self) -> Array:
-        """Estimated errors of `contact_radius` in beta, nan without contact, shape (points,)."""
+        """Estimated errors of `contact_radius` in beta, nan without contact, infinite where that is open, (points,)."""
         return self.finest_curve.errors[:, CONTACT_RADIUS]
 
     @property

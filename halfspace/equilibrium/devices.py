@@ -245,7 +245,7 @@ def _off(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: floa
         left = sum(fold.place < landing.place for fold in folds) if landing else 0
 
 
-def apart(problem: Traceable, off: Located, compliance: float) -> Located:
+def apart(problem: Traceable, off: Located, compliance: float = 0.0) -> Located:
     """State of the separated branch at the base of a jump off, which may be beyond the beginning of the curve."""
     base = _held(off, compliance).value
     separated = widened(problem, base)
@@ -258,7 +258,7 @@ def _held(state: Located, compliance: float) -> Condition:
     return replace(base, value=base.level(state.point))
 
 
-def landing_of(take_off: Located, problem: Traceable, start: Array, compliance: float) -> Located | Unsolved:
+def landing_of(take_off: Located, problem: Traceable, start: Array, compliance: float = 0.0) -> Located | Unsolved:
     """State on a discretisation at the base of a take-off."""
     held = _held(take_off, compliance)
     point = solved_point(problem, start, Control(held.weights, held.value), metric_for(problem), held.weights)

@@ -262,9 +262,10 @@ USUAL = ErrorRule()
 
 
 def estimate_event(name: str, chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Event:
-    """Turn an event into numbers with error estimates, see `errors_of`."""
-    values, errors = chains[0][-1].point.observables, errors_of(chains, rule)
-    return Event(name, *map(float, values), *map(float, errors))
+    """Turn an event into numbers with error estimates, see `errors_of` and `with_doubt`."""
+    best = chains[0][-1]
+    values, law = best.point.observables, best.problem.interface.law
+    return Event(name, *map(float, values), *map(float, with_doubt(errors_of(chains, rule), values, law)))
 
 
 def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Array:
@@ -299,13 +300,14 @@ def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Array:
     errors = np.maximum(errors, rule.least * (OWN + sizes))
     if np.isnan(errors[CONTACT_RADIUS]):  # another discretisation has no contact
         errors[CONTACT_RADIUS] = sizes[CONTACT_RADIUS]
-    return with_doubt(errors, best.point.observables, best.problem.interface.law)
+    return np.asarray(errors)
 
 
 def with_doubt(errors: Array, observables: Array, law: Law) -> Array:
-    """Errors (4,), that of the contact radius infinite where there is none but the gap's leaves that open."""
-    doubt = np.isnan(observables[CONTACT_RADIUS]) and (observables - errors)[CENTRAL_GAP] < law.edge_gap
-    return np.where((np.arange(4) == CONTACT_RADIUS) & doubt, np.inf, errors)
+    """Errors (4,), without contact that of its radius infinite if the gap's error leaves it open, nan else."""
+    if not np.isnan(observables[CONTACT_RADIUS]):
+        return errors
+    return np.append(errors[:CONTACT_RADIUS], np.inf if (observables - errors)[CENTRAL_GAP] < law.edge_gap else np.nan)
 
 
 def _by_load(event: Located) -> Array:

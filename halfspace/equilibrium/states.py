@@ -167,7 +167,8 @@ class FinestCurve(Valued):
         errors[~exist] = np.nan
         for i in np.setdiff1d(np.flatnonzero((exist & ~np.isfinite(errors)).any(axis=1)), there):
             errors[i] = self._errors(segment.problem, points[i])
-        return errors
+        law = segment.problem.interface.law
+        return np.array([with_doubt(own, point.observables, law) for own, point in zip(errors, points, strict=True)])
 
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Range of a coordinate on each of its branches, by name."""

@@ -29,7 +29,7 @@ from halfspace.equilibrium.events import is_event, numbered
 from halfspace.equilibrium.search import brackets_of, energy_released, find_events, with_care
 from halfspace.errors import required
 from halfspace.laws import LENNARD_JONES
-from halfspace.profiles import Sphere
+from halfspace.profiles.formulas import SphereSurface
 from halfspace.scales import Scales
 
 LEFT = 1e-9  # R dgamma or eps
@@ -68,7 +68,8 @@ def on(stage, state):
 
 def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
     """The half-space under a sphere or two."""
-    return under_surface(tabor, Sphere(radius_ratio, counter_radius).surface(tabor))
+    R = float(np.sqrt(radius_ratio / tabor))  # of the pair
+    return under_surface(tabor, SphereSurface(R * (1 + 1 / counter_radius), R * (1 + counter_radius)))
 
 
 def under_surface(tabor, surface, law=LENNARD_JONES):

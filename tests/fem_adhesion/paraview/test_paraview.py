@@ -18,6 +18,7 @@ from fem_adhesion.elasticity.cells import Cells, cell_quadrature
 from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.stress import sampled
 from fem_adhesion.fields import states_along
+from fem_adhesion.paraview import cells
 from fem_adhesion.paraview.arrays import MEANINGS, UNITS, inside, unit_of
 from fem_adhesion.paraview.cells import Lattice, cut_for, revolved
 from fem_adhesion.paraview.write import TOLERANCE, write_states
@@ -170,6 +171,7 @@ def test_nothing_visible_is_lost_between_the_nodes(states):
     """At random places in every cell the biquadratic interpolation is within the tolerance of the element's field."""
     state = states[-1]
     cut = cut_for(state.space, state.components, TOLERANCE)
+    assert cells._shown_error(state.space, state.components, cut.lattice) <= TOLERANCE
     assert cut_for(state.space, state.components, 1e-2).lattice.cuts < cut.lattice.cuts
     places = np.random.default_rng(0).uniform(0, 1, (2, 6))
     wanted = sampled(state.space, state.components, places)

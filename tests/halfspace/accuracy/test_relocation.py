@@ -76,6 +76,18 @@ def test_whether_there_is_a_contact_may_be_left_open():
     assert open_still.central_gap > LENNARD_JONES.edge_gap > open_still.central_gap - open_still.central_gap_error
     assert np.isnan([open_still.contact_radius, known.contact_radius, known.contact_radius_error]).all()
     assert open_still.contact_radius_error == np.inf
+    assert np.isnan(path.at(central_gap=1.0).contact_radius_error)
+    apart = np.isnan(path.contact_radius)
+    doubtful = apart & (path.central_gap - path.central_gap_error < LENNARD_JONES.edge_gap)
+    assert doubtful.any()
+    np.testing.assert_array_equal(path.contact_radius_error[apart], np.where(doubtful, np.inf, np.nan)[apart])
+
+
+@pytest.mark.parametrize(("before", "error"), [(0.9, np.nan), (0.0, np.inf)], ids=["known", "open"])
+def test_an_event_tells_whether_its_contact_is_open(before, error):
+    values = [np.array([0.0, -1.0, gap, np.nan]) for gap in (before, 1.0)]
+    event = events.estimate_event("jump_on", [_chain(Condition(APPROACH), np.ones(4), values)], events.ErrorRule(1.0))
+    np.testing.assert_equal(event.contact_radius_error, error)
 
 
 def test_the_pull_off_of_a_wide_contact_does_not_stay_where_its_grid_was_made():
