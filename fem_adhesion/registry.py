@@ -77,6 +77,11 @@ PARTS: dict[str, dict[str, Part]] = {
 """Parts by the name of their kind and their own."""
 
 
+def class_of(kind: str, name: str) -> Any:
+    """Class of a part by the name of its kind and its own."""
+    return PARTS[kind][name].made_by
+
+
 def name_of(part: object) -> str:
     """Name of a part; that of its class if it is not in the table."""
     own = type(part)
@@ -118,4 +123,4 @@ def part_from(kind: str, record: Mapping[str, Any]) -> Any:
         return part_from(name, value) if isinstance(value, Mapping) else value
 
     given = {name: made(name, value) for name, value in record.items() if name != "name"}
-    return PARTS[kind][record["name"]].made_by(**given)
+    return class_of(kind, record["name"])(**given)

@@ -14,7 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from fem_adhesion.common.words import Length, in_beta, part_in, usage
-from fem_adhesion.registry import PARTS, name_of
+from fem_adhesion.registry import PARTS, class_of, name_of
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -178,7 +178,7 @@ def _material(options: argparse.Namespace, poisson: float | None) -> dict[str, A
     said = {"traction": options.traction} if options.traction is not None else {}
     if poisson is None and options.strain is None and not said:
         return {}
-    made = PARTS["material"][MATERIALS[options.strain or "small"]].made_by
+    made = class_of("material", MATERIALS[options.strain or "small"])
     return {"material": made(POISSON if poisson is None else poisson, **said)}
 
 
@@ -189,7 +189,7 @@ def _counter(options: argparse.Namespace) -> Any:
         refuse(options, unheeded, "with --counter")
         return None
     poisson = POISSON if options.counter_poisson is None else options.counter_poisson
-    return part_in("body", options.counter, material=PARTS["material"]["linear-elastic"].made_by(poisson))
+    return part_in("body", options.counter, material=class_of("material", "linear-elastic")(poisson))
 
 
 def law_of(options: argparse.Namespace) -> Law:

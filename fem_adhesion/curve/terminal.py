@@ -104,10 +104,11 @@ def notes(curves: Curves) -> Iterator[str]:
             yield f"{solver}: a fold near {where} cannot be told, no finer grid has it; a smaller rtol may"
         told = tolerance_told(path.rtol, curves.missed(solver))
         yield f"{solver}: {path.unknowns} unknowns, {len(path.load)} points, {path.seconds:.2f} s; {told}"
-    if any(missed for *_, missed in _rows(curves)):
+    rows = list(_rows(curves))
+    if any(missed for *_, missed in rows):
         size = "of eps and the range of all approaches"
         yield f"{MISSED}: the error is above rtol = {curves.question.rtol:g} of the load, of an approach {size}."
-    radii = [event.estimate("contact_radius") for *_, event, _ in _rows(curves)]
+    radii = [event.estimate("contact_radius") for *_, event, _ in rows]
     is_open = any(np.isnan(radius.value) and np.isinf(radius.error) for radius in radii)
     yield (
         "In brackets: error of the last digit. Compression and approach are positive. Contact radius: "

@@ -14,7 +14,7 @@ from fem_adhesion import convergence
 from fem_adhesion.common.numbers import NUMBER, parse
 from fem_adhesion.common.words import part_in
 from fem_adhesion.fitting.model import BEYOND, FARTHEST, THEORIES
-from fem_adhesion.registry import PARTS
+from fem_adhesion.registry import PARTS, class_of
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.contact import APPROACH, LOAD
@@ -80,7 +80,7 @@ class Traced:
             return float(text) if re.fullmatch(NUMBER, text) else parse(text, what) / unit
 
         size = {"radius_ratio": units.radius_ratio} if "radius_ratio" in PARTS[kind][name].parameters else {}
-        material = {"material": PARTS["material"]["linear-elastic"].made_by(self.poisson)} if kind == "body" else {}
+        material = {"material": class_of("material", "linear-elastic")(self.poisson)} if kind == "body" else {}
         part = part_in(kind, self.word, length, size, poisson=self.poisson, **material)
         return Scene(units.tabor, **{kind: part})
 

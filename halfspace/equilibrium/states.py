@@ -164,7 +164,6 @@ class FinestCurve(Valued):
         before, after = np.searchsorted(there, every, side="right") - 1, np.searchsorted(there, every)
         errors = np.asarray(np.maximum(known[before], known[after]))
         exist = np.isfinite([point.observables for point in points])
-        errors[~exist] = np.nan
         for i in np.setdiff1d(np.flatnonzero((exist & ~np.isfinite(errors)).any(axis=1)), there):
             errors[i] = self._errors(segment.problem, points[i])
         law = segment.problem.interface.law
@@ -292,7 +291,7 @@ class FinestCurve(Valued):
         here = Located(PLANE, problem, point, 1.0)
         chains = not self._is_left_behind(problem) and ladder.chains(here, placed)
         if not chains:  # another discretisation does not have it
-            return np.where(np.isnan(point.observables), np.nan, np.inf)
+            return np.full(4, np.inf)
         errors = errors_of(chains, ladder.rule)
         if ladder.twin:
             return errors

@@ -79,5 +79,5 @@ def test_a_part_and_its_name_are_translated_both_ways():
     for kind, part in parts:
         record = record_of(part)
         assert part_from(kind, record) == part
-        assert registry.PARTS[kind][record["name"]].made_by is type(part)
+        assert registry.class_of(kind, record["name"]) is type(part)
         assert name_of(part) == record["name"]
