@@ -100,8 +100,9 @@ class Stages(Valued):
         at finite strain on the cells of the second level. Where the linear body does not have them, the curve of a
         higher level is traced at finite strain.
 
-        Where the tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2.
-        One chain has no twin beside it: the shift of an event along the path counts, see `ErrorRule.along`.
+        One chain has no twin beside it: the shift of an event along the path counts, see `ErrorRule.along`. Where the
+        tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2, and two
+        meshes may agree by accident (loads at pull-off then erred by 1.4 estimates): there is a twin, of cells between.
         """
         degree = _lowest_degree(rtol, self.scene.tabor) + max(level, 1)
         linear = not level and nearly_linear(self.scene, to_load, self.settings)
@@ -109,11 +110,16 @@ class Stages(Valued):
         curve = partial(linear_charts, self.scene, to_load) if linear else at_finite_strain
         other, body = self.body(degree - 1, *GRIDS.twin[:2]), self.body(degree)
         bodies = [other] if not level else [body] if level == 1 else [other, body]
-        stages = tuple(Raising(one, partial(Stages.windows, self, one.how.degree)) for one in bodies)
+        stages = tuple(map(self._stage, bodies))
+        between = self.body(degree - 1, *np.sqrt(GRIDS.twin[:2]))
+        twin = self._stage(between) if level and self.scene.scales.step_gap else None
         left, parts = REMAINING / self.scene.scales.gradual, (1.0, self.settings.other_cells)
         settings = {"linear": linear, **asdict(bodies[-1].how)}
         rule = ErrorRule(left, parts=parts, along=True)
-        return Rung(curve, stages, settings, rule=rule)
+        return Rung(curve, stages, settings, twin, rule=rule)
+
+    def _stage(self, body: ScenesBody) -> Raising:
+        return Raising(body, partial(Stages.windows, self, body.how.degree))
 
     def charts(self, degree: int, to_load: float) -> Iterable[Chart]:
         """Charts of a curve up to a load; NotConverged if that takes more of them than are worth their time."""
@@ -304,8 +310,8 @@ def require_well_posed(scene: Scene) -> None:
 class ScenesBody(Valued):
     """The body of a scene, a hemisphere at finite strain, to be meshed for any range of contact radii.
 
-    `how` is the degree of the elements and the size of their cells, which grow the slower the more steeply the tension
-    ends.
+    `how` is the degree of the elements and the size of their cells, which grow along the surface the slower the more
+    steeply the tension ends.
     """
 
     scene: Scene
@@ -323,11 +329,11 @@ class ScenesBody(Valued):
 
     def meshed(self, inner: float, outer: float) -> FiniteStrainProblem:
         """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
-        scene, R = self.scene, self.scene.sphere_radius
-        how = replace(self.how, growth=1 + (self.how.growth - 1) * scene.scales.gradual)
+        scene, how, R = self.scene, self.how, self.scene.sphere_radius
         ends, coordinate = layout_of(scene, how)
         first, last = (coordinate.of(min(radius, self.farthest)) for radius in (inner, outer))
-        lines = grid.graded(first, self.length, float(ends[0]), growth=how.growth, until=last)
+        growth = scene.scales.growth(how.growth)
+        lines = grid.graded(first, self.length, float(ends[0]), growth=growth, until=last)
         space = Space(mesh_of(scene, lines, how), quadrilateral(how.degree))
         pressure = quadrilateral(how.degree - 1) if projects(space, scene.poisson) else None
         return finite_strain_problem(
