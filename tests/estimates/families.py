@@ -49,8 +49,9 @@ def _estimate(event, quantity):
 
 
 def _real(numbers):
-    """Numbers that exist, but for the load that is zero by definition."""
-    return {what: n for what, n in numbers.items() if math.isfinite(n.value) and what != "zero_load load"}
+    """Numbers that exist, or are told to be open, but for the load that is zero by definition."""
+    told = {what: n for what, n in numbers.items() if math.isfinite(n.value) or n.error == math.inf}
+    return {what: n for what, n in told.items() if what != "zero_load load"}
 
 
 def of_springs(path, stiffnesses=(1e-6, 1e-2, 1.0, math.inf)):

@@ -7,6 +7,7 @@ import math
 import os
 from dataclasses import dataclass, replace
 from functools import partial
+from types import SimpleNamespace
 
 import constants
 import families
@@ -22,6 +23,8 @@ from fem_adhesion import Scene
 from fem_adhesion.crosscheck import comparison
 from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.equilibrium.charts import trace_charts
+from halfspace.equilibrium.contact import OBSERVABLES
+from halfspace.equilibrium.events import Event
 from halfspace.equilibrium.search import energy_released, find_events
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import Morse
@@ -67,6 +70,16 @@ def test_a_radius_that_one_of_two_true_grids_lacks_is_not_judged():
         judged = {n.what: n.ratio for n in judge(told, families.by_two(pair))}
         assert judged == {"gap": 0.0, "contact_radius": 0.0}
     assert judge({"gap": told["gap"]}, families.by_two(({}, {"gap": 0.15})))[0].ratio == math.inf
+
+
+@pytest.mark.parametrize(("error", "ratio"), [(math.inf, 0.0), (math.nan, math.inf)])
+def test_a_radius_told_to_be_open_may_be_any(error, ratio):
+    """Not so one that is told not to be there."""
+    numbers = {f"{q}{part}": 1.0 for q in OBSERVABLES for part in ("", "_error")}
+    jump = Event("jump_on", **numbers | {"contact_radius": math.nan, "contact_radius_error": error})
+    told = of_path(SimpleNamespace(events={"jump_on": jump}, energy=Estimate(1.0, 0.1)))
+    judged = judge(told, {"jump_on contact_radius": Estimate(0.16, 0.0)})
+    assert {n.what: n.ratio for n in judged}["jump_on contact_radius"] == ratio
 
 
 def test_a_true_state_is_on_the_branch_of_the_one_asked_for():
