@@ -52,12 +52,8 @@ Solved = tuple[int, Mapping[str, float]]
 """What one rung yields: unknowns, elastic ones included, and those of `QUANTITIES` that the method gives."""
 
 
-@dataclass(frozen=True)
-class Step:
-    """One rung of a ladder: its resolution in words, and the computation at a Tabor parameter."""
-
-    setting: str
-    run: Callable[[float], Solved]
+Step = tuple[str, Callable[[float], Solved]]
+"""One rung of a ladder: its resolution in words, and the computation at a Tabor parameter."""
 
 
 @dataclass(frozen=True)
@@ -215,13 +211,8 @@ def _on_block(tabor: float, p: int, f: float, L: float, growth: float, solve: So
     return solve(Space(mesh, ElementQuad2() if p == 2 else ElementQuadP(p)), tabor)
 
 
-ELEMENTS = {"P1": ElementTriP1(), "P2": ElementTriP2(), "P3": ElementTriP3()}
-SOLVERS: Mapping[str, Solver] = {
-    "": _condensed,
-    "clamped": partial(_condensed, far_field=clamped),
-    "monolithic": _monolithic,
-}
-HALF_SPACE: Mapping[str, Callable[..., Solved]] = {
+SOLVERS: Mapping[Variant, Solver] = {"clamped": partial(_condensed, far_field=clamped), "monolithic": _monolithic}
+BASES: Mapping[str, Callable[..., Solved]] = {
     "simple relaxation": partial(_relaxed, _simple),
     "Greenwood's iteration": partial(_relaxed, partial(relaxation.greenwood, tolerance=1e-5)),
     "uniform bands": partial(_on_grid, compliance.bands),
@@ -229,18 +220,20 @@ HALF_SPACE: Mapping[str, Callable[..., Solved]] = {
     "graded triangles": partial(_on_grid, compliance.triangles),
     "panels, fixed grid": _on_panels,
     "adaptive": lambda tabor, rtol: _adaptive(halfspace.trace(tabor, rtol=rtol)),
+    "P1": partial(_on_disc, ElementTriP1()),
+    "P2": partial(_on_disc, ElementTriP2()),
+    "P3": partial(_on_disc, ElementTriP3()),
+    "Q2": _on_block,
+    "hp": _on_block,
 }
+"""What solves a rung of a basis, given the Tabor parameter and its settings."""
 
 
-def _solver(family: Family, basis: str, variant: Variant) -> Callable[..., Solved]:
-    """What solves a rung of a method, given the Tabor parameter and its settings."""
-    if family == "half-space":
-        return HALF_SPACE[basis]
-    if basis in ELEMENTS:
-        return partial(_on_disc, ELEMENTS[basis], solve=SOLVERS[variant])
+def _solver(basis: str, variant: Variant) -> Callable[..., Solved]:
+    """What solves a rung of a method: by hp elements as a user has them, they are chosen by an accuracy."""
     if (basis, variant) == ("hp", ""):
         return lambda tabor, rtol: _adaptive(convergence.trace(Scene(tabor), rtol=rtol))
-    return partial(_on_block, solve=SOLVERS[variant])
+    return partial(BASES[basis], solve=SOLVERS[variant]) if variant else BASES[basis]
 
 
 def all_methods() -> list[Method]:
@@ -249,11 +242,11 @@ def all_methods() -> list[Method]:
     def step(solve: Callable[..., Solved], names: str, settings: Sequence[float]) -> Step:
         named = zip(names.split(), settings, strict=False)
         told = [f"{name}={value:.0e}" if name == "rtol" else f"{name}={value:g}" for name, value in named]
-        return Step(" ".join(told), lambda tabor: solve(tabor, *settings))
+        return " ".join(told), lambda tabor: solve(tabor, *settings)
 
     methods = []
     for row in tomllib.loads(data_text("speed", "methods.toml"))["method"]:
         names, rungs = row.pop("settings"), row.pop("rungs")
-        solve = _solver(row["family"], row["basis"], row.get("variant", ""))
+        solve = _solver(row["basis"], row.get("variant", ""))
         methods.append(Method(steps=[step(solve, names, settings) for settings in rungs], **row))
     return methods

@@ -208,10 +208,10 @@ def _costs(study: SpeedStudy, quantity: str | None) -> Table:
 
     def reached(method: Method) -> str:
         rung = best(study.of(method.name), quantity)
-        named = quantity or (rung.worst if rung else None)
-        if rung is None or named is None:
+        if rung is None:
             return "-"
-        return f"{'<' * rung.hidden(named)}{rung.error(named):.0e} in {rung.seconds:.2f} s ({rung.setting})"
+        below = "<" * rung.hidden(quantity or rung.worst)
+        return f"{below}{rung.error(quantity):.0e} in {rung.seconds:.2f} s ({rung.setting})"
 
     columns: Columns[Method] = {
         "method": lambda method: method.name,

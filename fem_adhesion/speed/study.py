@@ -88,20 +88,18 @@ class Timing:
         """Whether there is a result."""
         return self.status == "converged"
 
-    def error(self, quantity: str) -> float:
-        """Error of a quantity; nan where there is none."""
-        return self.errors.get(quantity, float("nan"))
+    def error(self, quantity: str | None) -> float:
+        """Error of a quantity, or of `worst` if none is named; nan where there is none."""
+        return self.errors.get(quantity or self.worst, float("nan"))
 
     def hidden(self, quantity: str) -> bool:
         """Whether the error is no more than the truth's uncertainty, which then stands in its place."""
         return self.error(quantity) <= self.floors.get(quantity, 0.0)
 
     @property
-    def worst(self) -> str | None:
-        """Quantity with the largest error; None without result, or with an error that is not a number."""
-        if not self.errors or not np.all(np.isfinite(list(self.errors.values()))):
-            return None
-        return max(self.errors, key=self.error)
+    def worst(self) -> str:
+        """Quantity with the largest error, or one whose error is not a number; empty without result."""
+        return max(self.errors, key=lambda name: np.nan_to_num(self.errors[name], nan=np.inf), default="")
 
 
 @dataclass(frozen=True)
@@ -175,7 +173,7 @@ class SpeedStudy:
             for rung in self.of(method.name):  # a coarse grid may be refused, but not above a finer one that was not
                 if (rung.status == "failed" and not method.may_diverge) or (solved and rung.status == "too coarse"):
                     yield f"{method.name} at {rung.setting}: {rung.reason}"
-                if rung.converged and rung.worst is None:
+                if rung.converged and not np.isfinite(rung.error(None)):
                     yield f"{method.name} at {rung.setting}: a result that is not a number"
                 solved = solved or rung.converged
             if not solved and not method.may_diverge:
@@ -195,19 +193,14 @@ class SpeedStudy:
 
 def cheapest(rungs: Sequence[Timing], tolerance: float, quantity: str | None = None) -> Timing | None:
     """Fastest rung within the tolerance, in one quantity or in all that it gives; None if there is none."""
-    good = [rung for rung in rungs if _error(rung, quantity) <= tolerance]
+    good = [rung for rung in rungs if rung.error(quantity) <= tolerance]
     return min(good, key=lambda rung: rung.seconds, default=None)
 
 
 def best(rungs: Sequence[Timing], quantity: str | None = None) -> Timing | None:
     """Most accurate rung, in one quantity or in all; None if none converged."""
-    good = [rung for rung in rungs if np.isfinite(_error(rung, quantity))]
-    return min(good, key=lambda rung: _error(rung, quantity), default=None)
-
-
-def _error(rung: Timing, quantity: str | None) -> float:
-    named = quantity or rung.worst
-    return rung.error(named) if named else float("nan")
+    good = [rung for rung in rungs if np.isfinite(rung.error(quantity))]
+    return min(good, key=lambda rung: rung.error(quantity), default=None)
 
 
 def pareto_front(rungs: Sequence[Timing], quantity: str) -> list[Timing]:
@@ -298,22 +291,23 @@ def _seconds(work: Callable[[], object]) -> float:
 
 def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) -> Timing:
     """One rung: run it, time it again if asked, and compare with the truth."""
+    setting, run = step
     began = time.perf_counter()
-    outcome = tried(with_peak_memory, lambda: step.run(tabor), refusals=True)
+    outcome = tried(with_peak_memory, lambda: run(tabor), refusals=True)
     seconds = time.perf_counter() - began
     if isinstance(outcome, Unsolved):
         status = next(status for kind, status in STATUS.items() if issubclass(outcome.kind, kind))
-        return Timing(method, step.setting, status, seconds, outcome.reason)
+        return Timing(method, setting, status, seconds, outcome.reason)
     (unknowns, values), memory = outcome
     if again:
-        seconds = min(seconds, _seconds(lambda: step.run(tabor)))
+        seconds = min(seconds, _seconds(lambda: run(tabor)))
+    floors = {name: truth.relative(name, true.error) for name, true in truth.values.items()}
     errors = {  # not below the truth's own uncertainty, since nothing less can be told
-        name: truth.relative(name, max(abs(values[name] - true.value), true.error))
+        name: max(truth.relative(name, abs(values[name] - true.value)), floors[name])
         for name, true in truth.values.items()
         if name in values
     }
-    floors = {name: truth.relative(name, true.error) for name, true in truth.values.items()}
-    return Timing(method, step.setting, "converged", seconds, "", unknowns, memory, errors, floors)
+    return Timing(method, setting, "converged", seconds, "", unknowns, memory, errors, floors)
 
 
 # How the time grows

@@ -13,7 +13,7 @@ from fem_adhesion import HalfSpace, Hemisphere, cli, convergence
 from fem_adhesion.common.page import markdown
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
-from fem_adhesion.speed.methods import QUANTITIES, Method, Step, all_methods
+from fem_adhesion.speed.methods import QUANTITIES, Method, all_methods
 from fem_adhesion.speed.page import read_earlier
 from fem_adhesion.speed.study import GROWTHS, SpeedStudy, Timing, Truth, measure, pareto_front
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
@@ -84,7 +84,7 @@ def test_the_quick_run_ends_well_and_its_files_are_there(run, page, rows):
     assert {file.name for file in (run / "speed").iterdir()} == FILES
     assert run.out == f"{page}written: speed/ ({len(FILES)} files)\n"
     assert "FAILED" not in page
-    rungs = [(method.name, step.setting) for method in METHODS for step in method.steps[: method.quick]]
+    rungs = [(method.name, setting) for method in METHODS for setting, _ in method.steps[: method.quick]]
     assert [(row["method"], row["setting"]) for row in rows] == rungs
 
 
@@ -145,7 +145,7 @@ def test_a_wrong_half_space_is_not_its_own_judge(monkeypatch):
 
 
 def counted_method(runs, quick):
-    steps = [Step(str(n), lambda tabor, n=n: runs.append(n) or (n, {"pull_off": tabor})) for n in range(3)]
+    steps = [(str(n), lambda tabor, n=n: runs.append(n) or (n, {"pull_off": tabor})) for n in range(3)]
     return Method("half-space", "counted", steps, quick)
 
 
@@ -167,14 +167,14 @@ def test_a_rung_is_recorded_by_how_it_ended(monkeypatch, error, status):
 
     truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
-    found = measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)], growths=[]).rungs[0]
+    found = measure(1.0, methods=[Method("half-space", "some", [("", end)], 1)], growths=[]).rungs[0]
     assert (found.status, found.reason) == (status, "on purpose")
 
 
 def test_too_many_nodes_are_refused_before_any_work():
     uniform = next(m for m in METHODS if m.name == "uniform triangles")
     with pytest.raises(InputError, match=r"\d{4,} nodes exceed 3000 of a dense operator; take another"):
-        uniform.steps[-1].run(20.0)
+        uniform.steps[-1][1](20.0)
 
 
 def test_a_tabor_parameter_out_of_range_is_refused():
@@ -225,7 +225,7 @@ def test_errors_below_the_truth_s_do_not_bend_the_exponents():
 
 
 def made_study(rungs, truths=None, *, quick=False, methods=None):
-    some = methods or (Method("half-space", "some", [Step(str(n), None) for n in range(4)], 2),)
+    some = methods or (Method("half-space", "some", [(str(n), None) for n in range(4)], 2),)
     estimate = {"pull_off": Estimate(-5.0, 1e-9), "jump_on": Estimate(-1.5, 2e-9), "hysteresis": Estimate(0.25, 3e-9)}
     default = {
         "half-space": Truth("finite elements", 1e-9, estimate, 1.0),
@@ -237,7 +237,7 @@ def made_study(rungs, truths=None, *, quick=False, methods=None):
 @pytest.fixture
 def distinct():
     """Four rungs of two methods; no two values are the same."""
-    methods = tuple(Method(f, "some", [Step("a", None), Step("b", None)], 1) for f in PREFIX)
+    methods = tuple(Method(f, "some", [("a", None), ("b", None)], 1) for f in PREFIX)
     rungs = []
     for m, method in enumerate(methods):
         for n in range(2):
@@ -388,7 +388,7 @@ def judged(method, *statuses):
     return made_study([Timing("some", str(n), s, 1.0, f"why {n}") for n, s in enumerate(statuses)], methods=[method])
 
 
-SOME = Method("half-space", "some", [Step("a", None)], 1)
+SOME = Method("half-space", "some", [("a", None)], 1)
 
 
 @pytest.mark.parametrize(
