@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -24,9 +25,9 @@ from fem_adhesion.common import style
 from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.page import data_rows, said
 from fem_adhesion.common.style import Picture
-from fem_adhesion.finite_sphere.cases import CRITICAL, Record
+from fem_adhesion.finite_sphere.cases import CRITICAL
 from fem_adhesion.finite_sphere.study import Study
-from fem_adhesion.finite_sphere.table import DRAWN, SHOWN, DeviationRow, borders, samples
+from fem_adhesion.finite_sphere.table import DRAWN, SHOWN, DeviationRow, borders
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.scaling import Units, contact_modulus, spacing_of
 from halfspace.values import Array, Estimate
@@ -110,25 +111,25 @@ MARKERS: Mapping[str, tuple[str, str]] = {
 }
 
 
-def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence[Record], heading: str = "") -> Figure:
+def chart(study: Study) -> Figure:
     """Draw the contours of 0.1, 1 and 10 % for the pull-off force and for the jump-on approach, side by side.
 
-    `borders` are where the jumps begin, `heading` what to know of the whole, as that a part was not solved.
+    Above them stands what to know of the whole, as that a part was not solved.
     """
     figure, panels = style.panels(2, height=7.4)
     for axes, quantity in zip(panels, DRAWN, strict=True):
         title = f"half-space's error of the {SHOWN[quantity]}"
         axes.set(xscale="log", yscale="log", xlim=(LEFT, RIGHT), ylim=(BOTTOM, TOP), title=title)
-        plane = in_plane(rows, quantity, poisson)
+        plane = in_plane(study.rows, quantity, study.poisson)
         _contours(axes, plane)
         _points(axes, plane)
         _materials(axes)
         style.plain_ticks(axes.xaxis, (0.1, 0.3, 1, 3, 10))
         axes.set(xlabel=r"Tabor parameter $\mu$", ylabel=r"radius over spacing $R/\epsilon$", axisbelow=True)
         axes.grid(True, color="0.9", linewidth=0.6)
-    _no_jump(panels[1], _begun(borders, poisson))
-    if heading:
-        figure.suptitle(heading, fontsize=10.5, color="0.25")
+    _no_jump(panels[1], _begun(study))
+    if study.quick or study.failed:
+        figure.suptitle(study.headline, fontsize=10.5, color="0.25")
     style.legend_below(figure, panels, columns=5)
     return figure
 
@@ -159,11 +160,11 @@ def _points(axes: Any, plane: Sequence[DeviationRow]) -> None:
             axes.plot(*at, marker, color="0.4", markersize=size, zorder=1.8, label=label)
 
 
-def _begun(borders: Sequence[Record], poisson: float | None) -> list[tuple[float, Estimate]]:
+def _begun(study: Study) -> list[tuple[float, Estimate]]:
     """R/eps, ascending and infinite of the half-space, and Tabor parameters from which on they jump."""
-    found = {border.case: border.values.get(CRITICAL) for border in borders if border.case.poisson in (None, poisson)}
-    begun = [(case.radius_ratio or np.inf, tabor) for case, tabor in found.items() if tabor]
-    return sorted(begun, key=lambda pair: pair[0])
+    here = [border for border in borders(study.records) if border.case.poisson in (None, study.poisson)]
+    begun = [(one.case.radius_ratio or np.inf, tabor) for one in here if (tabor := one.values.get(CRITICAL))]
+    return sorted(begun, key=itemgetter(0))
 
 
 def _no_jump(axes: Any, begun: Sequence[tuple[float, Estimate]]) -> None:
@@ -206,7 +207,7 @@ def _caption(study: Study) -> Iterator[str]:
     crossed = any(np.isfinite(contour(plane, level)[1]).any() for plane in planes for level in LINES)
     levels = ", ".join(f"{100 * level:g}" for level in LINES)
     yield said("finite_sphere", "chart", "lines" if crossed else "no_lines", levels=levels)
-    begun = {ratio: plus_minus(tabor) for ratio, tabor in _begun(borders(study.records), study.poisson)}
+    begun = {ratio: plus_minus(tabor) for ratio, tabor in _begun(study)}
     spheres = [ratio for ratio in begun if np.isfinite(ratio)]
     shown = [f"{begun[ratio]} at R/eps = {ratio:g}" for ratio in dict.fromkeys(spheres[:1] + spheres[-1:])]
     shown += [f"{tabor} on the half-space" for ratio, tabor in begun.items() if np.isinf(ratio)]
@@ -217,15 +218,10 @@ def _caption(study: Study) -> Iterator[str]:
     yield said("finite_sphere", "chart", "materials")
 
 
-def _figure_chart(study: Study) -> Figure:
-    heading = study.headline if study.quick or study.failed else ""
-    return chart(study.rows, study.poisson, borders(study.records), heading)
-
-
 def no_sphere(study: Study) -> str:
     """What is lacking where no sphere was solved, or empty."""
-    solved = samples(study.rows, "all", "pull_off_load", poisson=study.poisson)
-    return "" if solved.tabor.size else "no elastic sphere was solved beside the half-space"
+    solved = study.samples("all", "pull_off_load").tabor.size
+    return "" if solved else "no elastic sphere was solved beside the half-space"
 
 
-CHART = Picture("chart", said("finite_sphere", "chart", "title"), _figure_chart, _caption, no_sphere)
+CHART = Picture("chart", said("finite_sphere", "chart", "title"), chart, _caption, no_sphere)

@@ -19,17 +19,7 @@ from fem_adhesion.common.style import Picture
 from fem_adhesion.finite_sphere.chart import no_sphere
 from fem_adhesion.finite_sphere.fit import RIGID_PULL_OFF, SOFT_PULL_OFF, fit, leading_terms
 from fem_adhesion.finite_sphere.study import Study
-from fem_adhesion.finite_sphere.table import (
-    CAUSES,
-    DRAWN,
-    SHOWN,
-    DeviationRow,
-    Samples,
-    jumping_tabors,
-    panel_tabors,
-    points_by_poisson,
-    samples,
-)
+from fem_adhesion.finite_sphere.table import CAUSES, DRAWN, SHOWN, Samples, samples
 from halfspace.errors import InputError
 from halfspace.values import Array
 
@@ -40,12 +30,11 @@ SWITCHED = ("all", *(name for name, cause in CAUSES.items() if cause.label and n
 
 
 def _draw(study: Study) -> Figure:
-    rows = study.rows
-    tabors, poisson = panel_tabors(rows), study.poisson
+    tabors = study.panel_tabors
     figure, panels = style.panels(max(len(tabors), 2), height=6.4)
     for axes, tabor in zip(panels, tabors, strict=False):
         for cause in SWITCHED:
-            _cause(axes, rows, cause, tabor, poisson)
+            _cause(axes, study, cause, tabor)
         axes.set_title(rf"$\mu = {tabor:g}$")
         _theories(axes, tabor)
     finish(figure, panels[: len(tabors)])
@@ -74,9 +63,8 @@ def _plain(axis: Any, write: str | Callable[[float, int], str] = "{x:g}") -> Non
     axis.set_minor_formatter("")
 
 
-def _cause(axes: Any, rows: Sequence[DeviationRow], cause: str, tabor: float, poisson: float | None) -> None:
-    data = _pull_off(rows, cause, poisson, tabor=tabor)
-    how = CAUSES[cause]
+def _cause(axes: Any, study: Study, cause: str, tabor: float) -> None:
+    data, how = study.samples(cause, "pull_off_load", tabor=tabor), CAUSES[cause]
     colour = getattr(style, how.colour, how.colour)
     size = 8.0 if cause == "all" else 5.5  # the whole shows round its largest part
     signed(axes, data, color=colour, marker=how.marker, markersize=size, label=how.label)
@@ -113,10 +101,9 @@ def _theories(axes: Any, tabor: float) -> None:
 
 def _caption(study: Study) -> Iterator[str]:
     """Which part is the larger on the smallest and on the largest sphere, and what grip, strain and area change."""
-    rows, poisson = study.rows, study.poisson
     yield said("finite_sphere", "causes")
-    for tabor in panel_tabors(rows):
-        found = {cause: _pull_off(rows, cause, poisson, tabor=tabor).significant for cause in ("profile", "body")}
+    for tabor in study.panel_tabors:
+        found = {c: study.samples(c, "pull_off_load", tabor=tabor).significant for c in ("profile", "body")}
         both = np.intersect1d(found["profile"].radius_ratio, found["body"].radius_ratio)
         ends = []
         for ratio in np.unique(both[[0, -1]]) if both.size else ():
@@ -127,17 +114,11 @@ def _caption(study: Study) -> Iterator[str]:
             yield f"At mu = {tabor:g} the larger part is {', and '.join(ends)}."
     changes = (("grip",), "all"), (("strain",), "all"), (("reference", "normal"), "all"), (("traction",), "profile")
     for (causes, whole), name in zip(changes, ("grip", "strain", "uncertain", "traction"), strict=True):
-        parts = [_pull_off(rows, cause, poisson).significant for cause in causes]
-        larger = _pull_off(rows, whole, poisson).significant
+        *parts, larger = (study.samples(cause, "pull_off_load").significant for cause in (*causes, whole))
         shares = 100 * np.concatenate([_over(part, part.deviation, larger) for part in parts])
         if shares.size:
             shown = span(shares if name == "traction" else np.abs(shares))
             yield said("finite_sphere", "causes", name, span=shown, points=counted(shares.size, "point"))
-
-
-def _pull_off(rows: Sequence[DeviationRow], cause: str, poisson: float | None, **at: float) -> Samples:
-    """Deviations of the pull-off, those by the profile whatever Poisson's ratio."""
-    return samples(rows, cause, "pull_off_load", poisson=None if cause == "profile" else poisson, **at)
 
 
 def _over(points: Samples, values: Array, whole: Samples) -> Array:
@@ -154,7 +135,7 @@ DASHES = ("-", style.DASHED, style.DOTTED)  # one after the other when colours a
 def _figure_poisson(study: Study) -> Figure:
     figure, panels = style.panels(2, height=6.4)
     for axes, quantity in zip(panels, DRAWN, strict=True):
-        for number, (tabor, ratio) in enumerate(points_by_poisson(study.rows)):
+        for number, (tabor, ratio) in enumerate(study.points_by_poisson):
             data = samples(study.rows, "all", quantity, tabor=tabor, radius_ratio=ratio)
             if data.poisson.size:
                 order = np.argsort(data.poisson)
@@ -173,12 +154,11 @@ def _figure_poisson(study: Study) -> Figure:
 
 def _figure_bulk(study: Study) -> Figure:
     """Deviations of approaches at up to four Tabor parameters joined by lines, with markers where they are certain."""
-    rows, poisson = study.rows, study.poisson
     figure, panels = style.panels(2, height=6.4)
     for axes, way in zip(panels, ("on", "off"), strict=True):
-        for (colour, marker), tabor in zip(LOOKS, jumping_tabors(rows)[:4], strict=False):
+        for (colour, marker), tabor in zip(LOOKS, study.jumping_tabors[:4], strict=False):
             for suffix, how, dashes in (("", "raw", "-"), ("_less_bulk", "without bulk compression", style.DASHED)):
-                data = samples(rows, "all", f"jump_{way}_approach{suffix}", poisson=poisson, tabor=tabor)
+                data = study.samples("all", f"jump_{way}_approach{suffix}", tabor=tabor)
                 if data.tabor.size:
                     look, order = {"color": colour, "linestyle": dashes, "linewidth": 1.1}, np.argsort(data.stretch)
                     axes.plot(data.stretch[order], np.abs(data.deviation[order]), **look)
@@ -191,14 +171,13 @@ def _figure_bulk(study: Study) -> Figure:
 
 def _see_bulk(study: Study) -> Iterator[str]:
     """What the figure shows, and how much of the deviation, at most, is left without the yield."""
-    rows, poisson = study.rows, study.poisson
     yield said("finite_sphere", "bulk_figure")
     left = []
     for quantity in ("jump_on_approach", "jump_off_approach"):
-        whole, rest = (samples(rows, "all", quantity + suffix, poisson=poisson) for suffix in ("", "_less_bulk"))
+        whole, rest = (study.samples("all", quantity + suffix) for suffix in ("", "_less_bulk"))
         left.append(np.abs(_over(rest, np.abs(rest.deviation) + rest.error, whole.significant)))
     shares = np.concatenate(left)
-    if jumping_tabors(rows) and shares.size:
+    if study.jumping_tabors and shares.size:
         most = int(np.sum(shares < 0.5))
         numbers = {"span": span(100 * shares), "points": counted(shares.size, "point")}
         yield said("finite_sphere", "bulk_figure", "left", **numbers, most=most if most < shares.size else "all")
@@ -211,13 +190,13 @@ FIGURES = (
         said("finite_sphere", "poisson", "title"),
         _figure_poisson,
         lambda _: [said("finite_sphere", "poisson")],
-        lambda study: "" if points_by_poisson(study.rows) else "no point was solved at two Poisson's ratios",
+        lambda study: "" if study.points_by_poisson else "no point was solved at two Poisson's ratios",
     ),
     Picture(
         "bulk",
         said("finite_sphere", "bulk_figure", "title"),
         _figure_bulk,
         _see_bulk,
-        lambda study: "" if jumping_tabors(study.rows) else "no Tabor parameter jumps on spheres of two sizes",
+        lambda study: "" if study.jumping_tabors else "no Tabor parameter jumps on spheres of two sizes",
     ),
 )

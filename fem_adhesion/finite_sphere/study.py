@@ -11,14 +11,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from itertools import product
+from math import log
 from typing import Any
+
+import numpy as np
 
 from fem_adhesion.common.facts import code_digest
 from fem_adhesion.common.files import Store
 from fem_adhesion.common.jobs import solve_all
 from fem_adhesion.common.numbers import counted
 from fem_adhesion.finite_sphere.cases import MODELS, Record, SphereCase, case_of, compute, from_plain, to_plain
-from fem_adhesion.finite_sphere.table import DeviationRow, reference_poisson, rows
+from fem_adhesion.finite_sphere.table import DeviationRow, Samples, rows, samples
 from halfspace.errors import InputError
 from halfspace.limits import require_poisson, require_radius_ratio, require_tabor
 
@@ -35,10 +38,34 @@ class Study:
         """All quantities of all cases beside those without one cause."""
         return rows(self.records)
 
-    @property
+    @cached_property
     def poisson(self) -> float | None:
-        """Poisson's ratio of the figures that show one."""
-        return reference_poisson(self.rows)
+        """Poisson's ratio of the figures that show one: 0.3, or the nearest to it in the table."""
+        known = {row.poisson for row in self.rows if row.poisson is not None}
+        return min(known, key=lambda nu: abs(nu - 0.3), default=None)
+
+    def samples(self, cause: str, quantity: str, **at: float) -> Samples:
+        """Deviations at that Poisson's ratio, which those by the profile do not depend on, and at further inputs."""
+        return samples(self.rows, cause, quantity, poisson=None if cause == "profile" else self.poisson, **at)
+
+    @property
+    def panel_tabors(self) -> list[float]:
+        """Tabor parameters that have a panel: those nearest to 0.3, 1 and 3 in the table."""
+        known = {row.tabor for row in self.rows if row.cause == "all" and row.deviation}
+        return sorted({min(known, key=lambda mu: abs(log(mu / wanted))) for wanted in (0.3, 1.0, 3.0) if known})
+
+    @property
+    def points_by_poisson(self) -> list[tuple[float, float]]:
+        """Tabor parameters and R/eps whose pull-off is known at two Poisson's ratios or more."""
+        data = samples(self.rows, "all", "pull_off_load")
+        points, counts = np.unique([data.radius_ratio, data.tabor], axis=1, return_counts=True)
+        return [(float(mu), float(rho)) for rho, mu in points[:, counts > 1].T]
+
+    @property
+    def jumping_tabors(self) -> list[float]:
+        """Tabor parameters whose jump-on is known on spheres of two sizes or more."""
+        tabors, counts = np.unique(self.samples("all", "jump_on_approach").tabor, return_counts=True)
+        return [float(tabor) for tabor in tabors[counts > 1]]
 
     @property
     def failed(self) -> tuple[Record, ...]:

@@ -1,6 +1,6 @@
 """The results of the finite sphere as a table: each quantity of each case beside the same without one cause.
 
-Of its lines `Samples` are taken, and the points that figures and sentences speak of.
+Of its lines `Samples` are taken, of which figures and sentences speak.
 """
 
 from __future__ import annotations
@@ -230,29 +230,3 @@ def samples(rows: Iterable[DeviationRow], cause: str, quantity: str, **at: float
         if all(getattr(row, name) == value for name, value in at.items())
     ]
     return Samples(*np.array(chosen, float).reshape(-1, len(fields(Samples))).T)
-
-
-def reference_poisson(rows: Sequence[DeviationRow]) -> float | None:
-    """Poisson's ratio of the figures that show one: 0.3, or the nearest to it in the table."""
-    known = {row.poisson for row in rows if row.poisson is not None}
-    return min(known, key=lambda nu: abs(nu - 0.3), default=None)
-
-
-def panel_tabors(rows: Sequence[DeviationRow]) -> list[float]:
-    """Tabor parameters that have a panel: those nearest to 0.3, 1 and 3 in the table."""
-    known = {row.tabor for row in rows if row.cause == "all" and row.deviation}
-    return sorted({min(known, key=lambda mu: abs(np.log(mu / wanted))) for wanted in (0.3, 1.0, 3.0) if known})
-
-
-def points_by_poisson(rows: Sequence[DeviationRow]) -> list[tuple[float, float]]:
-    """Tabor parameters and R/eps whose pull-off is known at two Poisson's ratios or more."""
-    data = samples(rows, "all", "pull_off_load")
-    points, counts = np.unique([data.radius_ratio, data.tabor], axis=1, return_counts=True)
-    return [(float(mu), float(rho)) for rho, mu in points[:, counts > 1].T]
-
-
-def jumping_tabors(rows: Sequence[DeviationRow]) -> list[float]:
-    """Tabor parameters whose jump-on is known on spheres of two sizes or more."""
-    data = samples(rows, "all", "jump_on_approach", poisson=reference_poisson(rows))
-    tabors, counts = np.unique(data.tabor, return_counts=True)
-    return [float(tabor) for tabor in tabors[counts > 1]]

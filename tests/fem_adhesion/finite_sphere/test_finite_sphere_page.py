@@ -11,11 +11,10 @@ from page_tables import rows_of
 from whole_sphere import sphere_operator
 
 from fem_adhesion.common import style
-from fem_adhesion.finite_sphere import chart as chart_module
 from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.bulk import bulk_compliance, excess_compliance
 from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CRITICAL, MODELS, Record, case_of
-from fem_adhesion.finite_sphere.chart import contour, in_plane, safe_from
+from fem_adhesion.finite_sphere.chart import chart, contour, in_plane, safe_from
 from fem_adhesion.finite_sphere.page import SHOWN
 from fem_adhesion.finite_sphere.study import Study, plan
 from fem_adhesion.finite_sphere.table import CAUSES, NO_PARQUET, DeviationRow, borders, rows, write_tables
@@ -136,8 +135,8 @@ def test_the_least_safe_ratio_is_after_the_last_point_above():
     assert np.isnan(safe_from(plane([[np.nan] * 4] * 3), 0.01))
 
 
-def test_the_drawn_contour_is_that_of_the_deviations(table):
-    figure = chart_module.chart(table, 0.3, ())
+def test_the_drawn_contour_is_that_of_the_deviations(records):
+    figure = chart(Study(records))
     pull_off, jump_on = figure.axes
     for level in (0.1, 0.01, 0.001):
         expected = (1 + np.array(TABORS) / 2) / level
@@ -169,7 +168,7 @@ def test_a_point_is_marked_by_how_it_ended(records):
         else r
         for r in records
     ]
-    axes = chart_module.chart(rows(changed), 0.3, ()).axes[0]
+    axes = chart(Study(changed)).axes[0]
     for at, (*_, label) in endings.items():
         assert np.transpose(line_of(axes, label)).tolist() == [list(at)]
     assert {tuple(point) for point in np.transpose(line_of(axes, "solved"))} == {
@@ -178,7 +177,7 @@ def test_a_point_is_marked_by_how_it_ended(records):
 
 
 def test_the_border_of_the_jumps_is_drawn_where_it_is(records):
-    axes = chart_module.chart(rows(records), 0.3, borders(records)).axes[1]
+    axes = chart(Study(records)).axes[1]
     half_space, *spheres = borders(records)
     assert (half_space.case.radius_ratio, half_space.values[CRITICAL].value) == (None, pytest.approx(0.6))
     assert [border.case.radius_ratio for border in spheres] == [*RATIOS] * 3
