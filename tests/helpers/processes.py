@@ -1,7 +1,10 @@
 """Waiting for processes, as the tests that end them from outside do."""
 
 import os
+import signal
+import subprocess
 import time
+from contextlib import contextmanager
 
 PATIENCE = 300  # s; an end to waiting for what never comes, not for what is slow
 
@@ -21,3 +24,15 @@ def alive(group):
     except ProcessLookupError:
         return False
     return True
+
+
+@contextmanager
+def started(command, **how):
+    """Process in a group of its own, of which nothing is left at the end; `how` as of `subprocess.Popen`."""
+    process = subprocess.Popen(command, start_new_session=True, **how)
+    try:
+        yield process
+    finally:
+        if alive(process.pid):
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()

@@ -11,7 +11,7 @@ from html import unescape
 
 import pytest
 from page_tables import rows_of
-from processes import PATIENCE, alive, wait_until
+from processes import PATIENCE, alive, started, wait_until
 
 from fem_adhesion import cli
 from fem_adhesion.finite_sphere import page as finite_sphere_page
@@ -165,23 +165,13 @@ def interruptible():
 def test_a_signal_ends_the_study_and_its_workers(tmp_path):
     """What is done is kept, and --resume goes on with it; the other signal is held by the next test."""
     command = ["finite-sphere", "--out", str(tmp_path / "out"), "--tabor", "0.3", "3", "--radius-ratio", "1000"]
-    study = subprocess.Popen(
-        [sys.executable, "-m", "fem_adhesion.cli", *command, "--jobs", "2"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    try:
+    line = [sys.executable, "-m", "fem_adhesion.cli", *command, "--jobs", "2"]
+    with started(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as study:
         wait_until(lambda: list(tmp_path.glob("out/cases/[!.]*.json")) or study.poll() is not None)
         assert study.poll() is None
         os.killpg(study.pid, signal.SIGINT)
         out, error = study.communicate(timeout=PATIENCE)
         wait_until(lambda: not alive(study.pid))
-    finally:
-        if alive(study.pid):
-            os.killpg(study.pid, signal.SIGKILL)
-            study.wait()
     assert study.returncode == 130
     assert out == ""
     assert (

@@ -3,8 +3,6 @@
 import json
 import math
 import os
-import signal
-import subprocess
 import sys
 from dataclasses import asdict, replace
 from functools import cache
@@ -12,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from cheap_study import CASES, cheap, opened
-from processes import alive, wait_until
+from cheap_study import CASES, opened
+from processes import alive, started, wait_until
 
 import halfspace
 from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene
@@ -84,55 +82,29 @@ def test_inputs_out_of_range_are_refused(inputs, message):
 # --- running, killing and resuming ---
 
 
-def start_study(directory, log):
-    """Process that computes CASES on two workers, which wait for ever in the fourth and fifth."""
-    code = (
-        "from pathlib import Path; from fem_adhesion.finite_sphere.study import run; import cheap_study as c; "
-        f"run(c.CASES, c.opened(Path({str(directory)!r})), jobs=2, work=c.cheap)"
-    )
-    path = os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])  # the helpers, too
-    environment = {**os.environ, "PYTHONPATH": path, "STUDY_LOG": str(log), "STUDY_GATE": str(log.parent / "never")}
-    return subprocess.Popen(
-        [sys.executable, "-c", code],
-        env=environment,
-        start_new_session=True,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
+ENDLESS = """
+import sys; from pathlib import Path; from fem_adhesion.finite_sphere.study import run; import cheap_study as c
+run(c.CASES, c.opened(Path(sys.argv[1])), jobs=2, work=c.endless)
+"""
 
 
 def stored_cases(directory):
     return {json.loads(f.read_text())["inputs"]["tabor"]: f for f in directory.glob("cases/[!.]*.json")}
 
 
-def killed_study(directory, log):
-    """Cases on disk after a study was killed as it had stored three of them and begun two more."""
-    study = start_study(directory, log)
-    try:
-        wait_until(lambda: len(stored_cases(directory)) == 3 and len(list(log.iterdir())) == 5)
+def test_a_study_killed_under_way_computes_nothing_twice(tmp_path):
+    """Killed as it had stored three cases, on two workers that are at work and end by themselves."""
+    path = os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])  # the helpers, too
+    command = [sys.executable, "-c", ENDLESS, str(tmp_path)]
+    with started(command, env={**os.environ, "PYTHONPATH": path}) as study:
+        wait_until(lambda: len(stored_cases(tmp_path)) == 3)
         study.kill()
         study.wait()
-        wait_until(lambda: not alive(study.pid))  # the workers end by themselves
-    finally:
-        if alive(study.pid):
-            os.killpg(study.pid, signal.SIGKILL)
-            study.wait()
-    return stored_cases(directory)
-
-
-def test_a_study_killed_under_way_computes_nothing_twice(tmp_path, monkeypatch):
-    log, directory = tmp_path / "log", tmp_path / "study"
-    log.mkdir()
-    kept = killed_study(directory, log)
-    assert set(kept) == {case.tabor for case in CASES[:3]}
-    begun = len(list(log.iterdir()))
-    times = {tabor: file.stat().st_mtime_ns for tabor, file in kept.items()}
-    monkeypatch.setenv("STUDY_LOG", str(log))
-    records = run(CASES, opened(directory, resume=True), jobs=1, work=cheap)
-    assert [record.case for record in records] == CASES
-    assert all(record.status == "solved" for record in records)
-    assert len(list(log.iterdir())) - begun == len(CASES) - len(kept)
-    assert {tabor: stored_cases(directory)[tabor].stat().st_mtime_ns for tabor in times} == times
+        wait_until(lambda: not alive(study.pid))
+    asked = []
+    again = run(CASES, opened(tmp_path, resume=True), jobs=1, work=lambda case: asked.append(case) or remembered(case))
+    assert asked == CASES[3:]
+    assert [(record.case, record.status) for record in again] == [(case, "solved") for case in CASES]
 
 
 def test_a_case_whose_worker_died_is_tried_again_when_resumed(tmp_path, monkeypatch):
@@ -142,7 +114,7 @@ def test_a_case_whose_worker_died_is_tried_again_when_resumed(tmp_path, monkeypa
         )
         (died,) = run(CASES[:1], opened(tmp_path))
     assert (died.status, died.values, died.reason) == ("died", {}, "killed")
-    assert run(CASES[:1], opened(tmp_path, resume=True), jobs=1, work=cheap)[0].status == "solved"
+    assert run(CASES[:1], opened(tmp_path, resume=True), jobs=1, work=remembered)[0].status == "solved"
 
 
 def test_a_defect_of_the_program_is_no_refusal(tmp_path):
