@@ -144,19 +144,16 @@ def laid_out(figure: Figure) -> Figure:
 
 def captions(pictures: Sequence[Picture[Results]], results: Results) -> page.Table:
     """What is to be seen in each figure, for pages that show it elsewhere."""
-    lacking = {picture: picture.lacks(results) for picture in pictures}
     rows = [
-        (picture.stem, "" if lack else f"{picture.title}. {picture.see(results)}", lack)
-        for picture, lack in lacking.items()
+        (one.stem, "" if (lack := one.lacks(results)) else f"{one.title}. {one.see(results)}", lack) for one in pictures
     ]
     return page.Table("captions", "Captions", "", ("figure", "caption", "why not drawn"), rows)
 
 
 def shown(pictures: Sequence[Picture[Results]], results: Results, directory: Path) -> list[page.Figure]:
     """Figures that `draw` has written, as parts of a page, which can be sent alone, with links to the files beside."""
-    drawn = [picture for picture in pictures if not picture.lacks(results)]
     figures = []
-    for one in drawn:
+    for one in (picture for picture in pictures if not picture.lacks(results)):
         files = [suffix for suffix in ("svg", "png", "csv") if (directory / f"{one.stem}.{suffix}").exists()]
         svg = (directory / f"{one.stem}.svg").read_bytes()
         figures.append(page.Figure(svg, one.see(results), one.title, one.stem, files))

@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
+from itertools import product
 from typing import Any, Literal
 
 import halfspace
@@ -23,7 +24,7 @@ from fem_adhesion.materials import AreaName, LinearElastic, NeoHookean, Traction
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import Event, usual
+from halfspace.equilibrium.events import FOLDS, Event, usual
 from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import InputError, Unsolved, tried
 from halfspace.limits import SMALLEST_SPHERE
@@ -155,12 +156,8 @@ def quantities_of(path: EquilibriumPath) -> dict[str, Estimate]:
 
 def _jumps(events: Mapping[str, Event]) -> dict[str, Estimate]:
     """Approach and load of the jumps that there are."""
-    values = {}
-    for name in ("jump_on", "jump_off"):
-        if jump := events.get(name):
-            values[f"{name}_approach"] = jump.estimate("approach")
-            values[f"{name}_load"] = jump.estimate("load")
-    return values
+    found = product((name for name in FOLDS if name in events), ("approach", "load"))
+    return {f"{name}_{number}": events[name].estimate(number) for name, number in found}
 
 
 def _half_space(case: SphereCase, *, true_profile: bool = False) -> Values:

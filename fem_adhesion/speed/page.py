@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -224,15 +225,13 @@ def _costs(study: SpeedStudy, quantity: str | None) -> Table:
 
 def _beside(study: SpeedStudy, earlier: Earlier, quantity: str) -> Table:
     """Yardsticks of the fastest method to each tolerance, of the earlier run and of this one."""
-    (name, known), rows = earlier, []
+    name, known = earlier
+    ours, rows = [replace(rung, seconds=rung.seconds / study.yardstick) for rung in study.rungs], []
     for tolerance in (10.0**-digits for digits in range(2, 9)):
-        before, now = (cheapest(rungs, tolerance, quantity) for rungs in (known, study.rungs))
-        costs = before.seconds if before else math.nan, now.seconds / study.yardstick if now else math.nan
-        cells = [
-            f"{cost:.0f} ({rung.method}, {rung.setting})" if rung else "-"
-            for cost, rung in zip(costs, (before, now), strict=True)
-        ]
-        rows.append([f"{tolerance:.0e}", *cells, _number(costs[1] / costs[0], "{:.2f}") or "-"])
+        before, now = (cheapest(rungs, tolerance, quantity) for rungs in (known, ours))
+        cells = [f"{rung.seconds:.0f} ({rung.method}, {rung.setting})" if rung else "-" for rung in (before, now)]
+        ratio = f"{now.seconds / before.seconds:.2f}" if before and now else "-"
+        rows.append([f"{tolerance:.0e}", *cells, ratio])
     title = said("speed", "beside", "title", quantity=quantity, name=name)
     return Table("", title, "", ("tolerance", "earlier", "now", "now / earlier"), rows)
 
