@@ -171,12 +171,6 @@ def test_a_rung_is_recorded_by_how_it_ended(monkeypatch, error, status):
     assert (found.status, found.reason) == (status, "on purpose")
 
 
-def test_too_many_nodes_are_refused_before_any_work():
-    uniform = next(m for m in METHODS if m.name == "uniform triangles")
-    with pytest.raises(InputError, match=r"\d{4,} nodes exceed 3000 of a dense operator; take another"):
-        uniform.steps[-1][1](20.0)
-
-
 def test_a_tabor_parameter_out_of_range_is_refused():
     with pytest.raises(InputError, match=r"tabor = .* is outside 0\.05 <= tabor <= 2; take 1"):
         measure(5.0)
