@@ -24,9 +24,7 @@ from halfspace.values import Estimate
 TABORS, RATIOS = (0.3, 1.0, 3.0), (10.0, 100.0, 1e3, 1e4)
 
 
-def caption(stem, found):
-    """What is to be seen in a figure."""
-    return next(picture.see(found) for picture in finite_sphere_page.PICTURES if picture.stem == stem)
+PICTURES = {picture.stem: picture for picture in finite_sphere_page.PICTURES}
 
 
 def law(mu, rho):
@@ -86,8 +84,7 @@ def written(records, tmp_path_factory):
     """Directory of the study, with one of its pictures, that of fitted lines; the quick form has all."""
     directory, begun = tmp_path_factory.mktemp("study"), []
     with pytest.MonkeyPatch.context() as patch:
-        causes = [picture for picture in finite_sphere_page.PICTURES if picture.stem == "causes"]
-        patch.setattr(finite_sphere_page, "PICTURES", causes)
+        patch.setattr(finite_sphere_page, "PICTURES", [PICTURES["causes"]])
         finite_sphere_page.write(Study(records), directory, begun.append)
     assert begun == [part for part in finite_sphere_page.PARTS if part in ("table", "figure causes", "page")]
     return directory
@@ -189,27 +186,30 @@ def test_the_border_of_the_jumps_is_drawn_where_it_is(records):
 # --- figures: what an axis says is what is drawn along it ---
 
 
-def labelled(axes):
-    return axes.get_xlabel(), axes.get_ylabel()
+LOADS_AND_JUMPS = ("pull_off_load", "jump_on_approach", "jump_on_load", "jump_off_approach", "jump_off_load")
 
 
 def values_of(case):
     """Every number of the study another, by model and point."""
     model = list(MODELS).index(case.model) + 1
     size = 1e-3 * model * (1 + (case.tabor or 0.0)) * (1 + (case.poisson or 0.0)) / np.sqrt(case.radius_ratio or 1.0)
-    names = ("pull_off_load", "jump_on_approach", "jump_on_load", "jump_off_approach", "jump_off_load")
-    names += ("hysteresis", "zero_load_radius")
+    names = (*LOADS_AND_JUMPS, "hysteresis", "zero_load_radius")
     scale = 1.0 if case.radius_ratio else 0.0
     return {APPROACH_SCALE: Estimate(11.0, 0.0)} | {
         name: Estimate(-(2 + n) * (1 - scale * size * (1 + 0.1 * n)), 1e-9 * (1 + n)) for n, name in enumerate(names)
     }
 
 
+def study_of(values):
+    """Study of which each case has its values, and nothing is known of where the jumps begin."""
+    cases = [case for case in plan(TABORS, RATIOS, [0.0, 0.3])[0] if not case.model.startswith("first_jump")]
+    return Study([Record(case, "solved", values(case), "", 1.0) for case in cases])
+
+
 @pytest.fixture(scope="module")
 def distinct():
     """Results whose values are all distinct."""
-    cases = [case for case in plan(TABORS, RATIOS, [0.0, 0.3])[0] if not case.model.startswith("first_jump")]
-    return Study([Record(case, "solved", values_of(case), "", 1.0) for case in cases])
+    return study_of(values_of)
 
 
 def expected_deviation(cause, quantity, tabor, ratio, poisson):
@@ -272,9 +272,8 @@ def test_without_the_library_the_csv_alone_is_written(tmp_path, monkeypatch):
 
 
 def drawn(results, stem):
-    (picture,) = (picture for picture in finite_sphere_page.PICTURES if picture.stem == stem)
-    assert not picture.lacks(results)
-    return picture.draw(results).axes
+    assert not PICTURES[stem].lacks(results)
+    return PICTURES[stem].draw(results).axes
 
 
 ILL_POSED = {("strain", 3.0, 10.0)}
@@ -285,9 +284,8 @@ def test_the_axes_of_the_causes_say_what_is_drawn(distinct):
     axes = drawn(distinct, "causes")
     assert [panel.get_title() for panel in axes] == [rf"$\mu = {mu:g}$" for mu in TABORS]
     for mu, panel in zip(TABORS, axes, strict=True):
-        x, y = labelled(panel)
-        assert x == r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
-        assert y in ("|relative deviation from the half-space|", "")
+        assert panel.get_xlabel() == r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
+        assert panel.get_ylabel() in ("|relative deviation from the half-space|", "")
         for cause in ("all", "profile", "body", "grip", "traction", "strain"):
             label = CAUSES[cause].label
             assert label.startswith(f"{cause}: ")
@@ -308,7 +306,7 @@ def test_the_axes_of_the_causes_say_what_is_drawn(distinct):
 def test_the_axes_of_poissons_ratio_say_what_is_drawn(distinct):
     axes = drawn(distinct, "poisson")
     for panel, quantity in zip(axes, ("pull_off_load", "jump_on_approach"), strict=True):
-        assert labelled(panel)[0] == r"Poisson's ratio $\nu$"
+        assert panel.get_xlabel() == r"Poisson's ratio $\nu$"
         assert quantity.replace("_load", "").replace("_", "-").split("-approach")[0] in panel.get_title()
         for mu in TABORS:
             for rho in RATIOS:
@@ -321,7 +319,7 @@ def test_the_axes_of_poissons_ratio_say_what_is_drawn(distinct):
 def test_the_axes_of_the_bulk_say_what_is_drawn(distinct):
     for panel, way in zip(drawn(distinct, "bulk"), ("on", "off"), strict=True):
         assert panel.get_title() == f"approach at jump-{way}"
-        assert labelled(panel)[0] == r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
+        assert panel.get_xlabel() == r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
         quantity = f"jump_{way}_approach"
         for mu in TABORS:
             found = {
@@ -343,19 +341,14 @@ def test_the_axes_of_the_bulk_say_what_is_drawn(distinct):
 # --- sentences: true of absurd data, or not said ---
 
 
-def study_of(law, tabors=TABORS, ratios=RATIOS, poissons=(0.0, 0.3)):
-    """Results in which the pull-off and the approaches of a model deviate by law(case) from the half-space's."""
+def deviating(law):
+    """Study in which the pull-off and the approaches of a model deviate by law(case) from the half-space's."""
 
-    def solved(case):
-        if case.model.startswith("first_jump"):
-            return Record(case, "solved", {}, "", 1.0)
-        deviation = law(case) if case.radius_ratio else 0.0
-        names = ("pull_off_load", "jump_on_approach", "jump_on_load", "jump_off_approach", "jump_off_load")
-        values = {name: Estimate(-4.0 * (1 + deviation), 1e-9) for name in names}
-        return Record(case, "solved", values | {APPROACH_SCALE: Estimate(4.0, 0.0)}, "", 1.0)
+    def values(case):
+        value = Estimate(-4.0 * (1 + (law(case) if case.radius_ratio else 0.0)), 1e-9)
+        return {APPROACH_SCALE: Estimate(4.0, 0.0)} | dict.fromkeys(LOADS_AND_JUMPS, value)
 
-    cases = plan(tabors, ratios, poissons)[0]
-    return Study([solved(case) for case in cases])
+    return study_of(values)
 
 
 def share(case, **of_models):
@@ -374,12 +367,12 @@ def share(case, **of_models):
     ],
 )
 def test_a_caption_tells_what_the_numbers_are(stem, of_models, told):
-    assert told in caption(stem, study_of(lambda case: share(case, **of_models)))
+    assert told in PICTURES[stem].see(deviating(lambda case: share(case, **of_models)))
 
 
 def test_nothing_is_concluded_from_numbers_that_are_none(tmp_path):
-    found = study_of(lambda _: math.nan)
-    for picture in finite_sphere_page.PICTURES:
+    found = deviating(lambda _: math.nan)
+    for picture in PICTURES.values():
         assert picture.see(found)
         assert picture.lacks(found)
     finite_sphere_page.write(found, tmp_path)
@@ -390,7 +383,7 @@ def test_nothing_is_concluded_from_numbers_that_are_none(tmp_path):
 
 def test_a_half_space_never_good_enough_is_not_said_to_be(tmp_path, monkeypatch):
     monkeypatch.setattr(finite_sphere_page, "PICTURES", ())
-    finite_sphere_page.write(study_of(lambda _: 5.0), tmp_path)
+    finite_sphere_page.write(deviating(lambda _: 5.0), tmp_path)
     page = (tmp_path / "index.html").read_text()
     assert page.count("at no R/ε up to 10000 for all μ from 0.3 to 3") >= 3
     assert "</strong> if R/ε" not in page
