@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -36,16 +37,13 @@ def _safe(study: Study) -> Table:
         least = safe_from(plane, level)
         return f"{least:g}" if np.isfinite(least) else "none" if any(row.known for row in plane) else ""
 
-    lines = [
-        (
-            *(SHOWN[name], f"{100 * level:g} %"),
-            *(cell([row for row in plane if row.tabor == tabor], level) for tabor in tabors),
-        )
-        for name, plane in planes.items()
-        for level in LINES
-    ]
-    columns = ("quantity", "half-space errs less than", *(f"R/eps at mu = {tabor:g}" for tabor in tabors))
-    return Table(*titled("finite_sphere", "safe"), columns, lines)
+    columns: Columns[tuple[str, float]] = {
+        ("quantity", "half-space errs less than"): lambda at: (SHOWN[at[0]], f"{100 * at[1]:g} %"),
+        tuple(f"R/eps at mu = {tabor:g}" for tabor in tabors): lambda at: [
+            cell([row for row in planes[at[0]] if row.tabor == tabor], at[1]) for tabor in tabors
+        ],
+    }
+    return Table.of(*titled("finite_sphere", "safe"), product(SHOWN, LINES), columns)
 
 
 def _fits(study: Study) -> Table:

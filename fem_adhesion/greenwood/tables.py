@@ -232,20 +232,15 @@ def fit(tabor: Array, central_gap: Array, approach: Array) -> tuple[Criterion, .
     mu, y, z = tabor, central_gap + 1, 1 - approach
     closed, of_gap = "(H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2)", "(H0 + 1)^(7/2) = c mu^(3/2) [1 - n/(H0 + 1)^6]"
     of_approach, exact = "(|alpha*| + 1)^(7/2) = c mu^(3/2)", {"c": criteria.FIT, "n": criteria.FIT_REPULSION}
+    over_rigid = y**3.5 / (np.pi * np.sqrt(2) * mu**1.5)
     found = [
-        Criterion(
-            *(name, closed, partial(criteria.closed_gap, k=k), False),
-            *_fitted(_constant, y, y**3.5 / (np.pi * np.sqrt(2) * mu**1.5), {"k": k}),
-        )
+        Criterion(name, closed, partial(criteria.closed_gap, k=k), False, *_fitted(_constant, y, over_rigid, {"k": k}))
         for name, k in CLOSED.items()
     ]
-    found += [
-        Criterion("fit (4.5)", of_gap, criteria.fitted_gap, False, *_fitted(_repulsion, y, y**3.5 / mu**1.5, exact)),
-        Criterion(
-            *("fit of App. C", of_approach, criteria.fitted_approach, True),
-            *_fitted(_constant, z, z**3.5 / mu**1.5, {"c": 3 * np.pi**2}),
-        ),
-    ]
+    gaps = _fitted(_repulsion, y, y**3.5 / mu**1.5, exact)
+    approaches = _fitted(_constant, z, z**3.5 / mu**1.5, {"c": 3 * np.pi**2})
+    found.append(Criterion("fit (4.5)", of_gap, criteria.fitted_gap, False, *gaps))
+    found.append(Criterion("fit of App. C", of_approach, criteria.fitted_approach, True, *approaches))
     far = mu >= REPULSION_GONE
     if far.sum() >= 4:  # 3/7 by every theory, which no one fitted
         for name, symbol, values in (("gap", "H0", y), ("approach", "|alpha*|", z)):
