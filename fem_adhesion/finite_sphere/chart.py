@@ -220,7 +220,7 @@ def _caption(study: Study) -> Iterator[str]:
 
 def no_sphere(study: Study) -> str:
     """What is lacking where no sphere was solved, or empty."""
-    solved = study.samples("all", "pull_off_load").tabor.size
+    solved = study.samples("all", "pull_off_load").size
     return "" if solved else "no elastic sphere was solved beside the half-space"
 
 

@@ -19,7 +19,7 @@ from fem_adhesion.common.style import Picture
 from fem_adhesion.finite_sphere.chart import no_sphere
 from fem_adhesion.finite_sphere.fit import RIGID_PULL_OFF, SOFT_PULL_OFF, fit, leading_terms
 from fem_adhesion.finite_sphere.study import Study
-from fem_adhesion.finite_sphere.table import CAUSES, DRAWN, SHOWN, Samples, samples
+from fem_adhesion.finite_sphere.table import CAUSES, DRAWN, SHOWN, Samples, samples, significant
 from halfspace.errors import InputError
 from halfspace.values import Array
 
@@ -79,10 +79,10 @@ def _cause(axes: Any, study: Study, cause: str, tabor: float) -> None:
 
 def signed(axes: Any, data: Samples, **look: Any) -> None:
     """Sizes of deviations that exceed their errors: filled markers where negative, hollow where positive."""
-    known = data.significant
+    known = significant(data)
     for sign, face in ((-1, look["color"]), (1, "white")):
-        chosen = known.where(np.sign(known.deviation) == sign)
-        if chosen.tabor.size:
+        chosen = known[np.sign(known.deviation) == sign]
+        if chosen.size:
             x, y = chosen.stretch, np.abs(chosen.deviation)
             axes.plot(x, y, **{"markersize": 5.5, **look}, linestyle="none", markerfacecolor=face)
             look["label"] = None  # once is enough
@@ -103,7 +103,7 @@ def _caption(study: Study) -> Iterator[str]:
     """Which part is the larger on the smallest and on the largest sphere, and what grip, strain and area change."""
     yield said("finite_sphere", "causes")
     for tabor in study.panel_tabors:
-        found = {c: study.samples(c, "pull_off_load", tabor=tabor).significant for c in ("profile", "body")}
+        found = {c: significant(study.samples(c, "pull_off_load", tabor=tabor)) for c in ("profile", "body")}
         both = np.intersect1d(found["profile"].radius_ratio, found["body"].radius_ratio)
         ends = []
         for ratio in np.unique(both[[0, -1]]) if both.size else ():
@@ -114,7 +114,7 @@ def _caption(study: Study) -> Iterator[str]:
             yield f"At mu = {tabor:g} the larger part is {', and '.join(ends)}."
     changes = (("grip",), "all"), (("strain",), "all"), (("reference", "normal"), "all"), (("traction",), "profile")
     for (causes, whole), name in zip(changes, ("grip", "strain", "uncertain", "traction"), strict=True):
-        *parts, larger = (study.samples(cause, "pull_off_load").significant for cause in (*causes, whole))
+        *parts, larger = (significant(study.samples(cause, "pull_off_load")) for cause in (*causes, whole))
         shares = 100 * np.concatenate([_over(part, part.deviation, larger) for part in parts])
         if shares.size:
             shown = span(shares if name == "traction" else np.abs(shares))
@@ -137,7 +137,7 @@ def _figure_poisson(study: Study) -> Figure:
     for axes, quantity in zip(panels, DRAWN, strict=True):
         for number, (tabor, ratio) in enumerate(study.points_by_poisson):
             data = samples(study.rows, "all", quantity, tabor=tabor, radius_ratio=ratio)
-            if data.poisson.size:
+            if data.size:
                 order = np.argsort(data.poisson)
                 nu, y = data.poisson[order], data.deviation[order]
                 colour, marker = LOOKS[number % 6]
@@ -159,7 +159,7 @@ def _figure_bulk(study: Study) -> Figure:
         for (colour, marker), tabor in zip(LOOKS, study.jumping_tabors[:4], strict=False):
             for suffix, how, dashes in (("", "raw", "-"), ("_less_bulk", "without bulk compression", style.DASHED)):
                 data = study.samples("all", f"jump_{way}_approach{suffix}", tabor=tabor)
-                if data.tabor.size:
+                if data.size:
                     look, order = {"color": colour, "linestyle": dashes, "linewidth": 1.1}, np.argsort(data.stretch)
                     axes.plot(data.stretch[order], np.abs(data.deviation[order]), **look)
                     signed(axes, data, color=colour, marker=marker)
@@ -175,7 +175,7 @@ def _see_bulk(study: Study) -> Iterator[str]:
     left = []
     for quantity in ("jump_on_approach", "jump_off_approach"):
         whole, rest = (study.samples("all", quantity + suffix) for suffix in ("", "_less_bulk"))
-        left.append(np.abs(_over(rest, np.abs(rest.deviation) + rest.error, whole.significant)))
+        left.append(np.abs(_over(rest, np.abs(rest.deviation) + rest.error, significant(whole))))
     shares = np.concatenate(left)
     if study.jumping_tabors and shares.size:
         most = int(np.sum(shares < 0.5))

@@ -90,7 +90,7 @@ def findings(rows: Sequence[DeviationRow], poisson: float) -> Iterator[Finding]:
     keys = dict.fromkeys((row.cause, row.quantity, row.poisson) for row in rows if row.poisson in (None, poisson))
     for cause, quantity, nu in keys:
         data = samples(rows, cause, quantity, poisson=nu)
-        parts = {None: data} | {float(mu): data.where(data.tabor == mu) for mu in np.unique(data.tabor)}
+        parts = {None: data} | {float(mu): data[data.tabor == mu] for mu in np.unique(data.tabor)}
         for tabor, part in parts.items():
             terms = leading_terms(cause, quantity, one_tabor=tabor is not None)
             yield cause, quantity, tabor, tried(fit, part, terms, refusals=True)
@@ -102,7 +102,7 @@ def compare(rows: Sequence[DeviationRow]) -> Iterator[tuple[str, float, float, E
     Each theory has its name, the leading coefficient in its limit, the nearest Tabor parameter, and that fitted there.
     """
     data = samples(rows, "profile", "pull_off_load", poisson=None)
-    if not data.tabor.size:
+    if not data.size:
         raise InputError(
             "0 deviations of the pull-off by the profile, limit 4; solve for some at small tabor/radius_ratio"
         )
@@ -111,7 +111,7 @@ def compare(rows: Sequence[DeviationRow]) -> Iterator[tuple[str, float, float, E
         ("Maugis (1995): (beta/R)^2", "(beta/R)^2", "(beta/R)^4", SOFT_PULL_OFF, float(data.tabor.max())),
     ):
         terms = {"leading": ALL[name], "square": ALL[square]}
-        found = fit(data.where(data.tabor == tabor), terms, tolerance=TOLERANCE / 10)
+        found = fit(data[data.tabor == tabor], terms, tolerance=TOLERANCE / 10)
         yield theory, expected, tabor, found.coefficients["leading"]
 
 
@@ -123,21 +123,21 @@ def fit(data: Samples, terms: Mapping[str, Term], *, tolerance: float = TOLERANC
     """
     functions = list(terms.values())
     for limit in np.unique(data.stretch)[::-1]:
-        part = data.where(data.stretch <= limit)
-        if part.tabor.size < 2 * len(terms):
+        part = data[data.stretch <= limit]
+        if part.size < 2 * len(terms):
             break
         found, residual, allowed = _least_squares(part, functions, tolerance)
         if np.all(np.abs(residual) <= allowed):
-            nearer = part.where(part.stretch <= limit / 2)
-            if nearer.tabor.size >= 2 * len(terms):  # what the terms leave out pulls at them, which no scatter shows
+            nearer = part[part.stretch <= limit / 2]
+            if nearer.size >= 2 * len(terms):  # what the terms leave out pulls at them, which no scatter shows
                 others, _, _ = _least_squares(nearer, functions, tolerance)
                 found = [
                     Estimate(c.value, c.error + abs(c.value - d.value)) for c, d in zip(found, others, strict=True)
                 ]
             coefficients = dict(zip(terms, found, strict=True))
-            return Fit(coefficients, float(limit), part.tabor.size, float(np.abs(residual).max()))
+            return Fit(coefficients, float(limit), part.size, float(np.abs(residual).max()))
     raise InputError(
-        f"{data.tabor.size} points leave no {2 * len(terms)} or more within tolerance = {tolerance:g} of a fit; "
+        f"{data.size} points leave no {2 * len(terms)} or more within tolerance = {tolerance:g} of a fit; "
         "give more points of small tabor/radius_ratio"
     )
 
@@ -154,7 +154,7 @@ def _least_squares(data: Samples, terms: Sequence[Term], tolerance: float) -> tu
     sizes = np.linalg.norm(scaled, axis=0)
     c = np.linalg.lstsq(scaled / sizes, data.deviation / sigma, rcond=None)[0] / sizes
     residual = data.deviation - A @ c
-    spread = np.sum((residual / sigma) ** 2) / (data.deviation.size - len(terms))
+    spread = np.sum((residual / sigma) ** 2) / (data.size - len(terms))
     variance = spread * np.diag(np.linalg.pinv((scaled / sizes).T @ (scaled / sizes))) / sizes**2
     found = [Estimate(float(v), float(DEVIATIONS * np.sqrt(s))) for v, s in zip(c, variance, strict=True)]
     return found, residual, data.error + tolerance * (np.abs(A) @ np.abs(c))

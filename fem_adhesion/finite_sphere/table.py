@@ -11,15 +11,15 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_adhesion.bodies.body import GripName
 from fem_adhesion.common.page import data_rows
 from fem_adhesion.finite_sphere.bulk import bulk_compliance
 from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, MODELS, QUANTITIES, Record, case_of
-from halfspace.values import Array, Estimate, Valued
+from halfspace.values import Array, Estimate
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]
 """Of grip, Poisson's ratio and R/beta: what a body yields more than the half-space under a load, in 1/(E* R)."""
@@ -193,32 +193,24 @@ def _cells(row: DeviationRow) -> dict[str, object]:
 # What figures and sentences speak of
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Samples(Valued):
-    """Relative deviations of one quantity for one cause at n points, and the bounds of their errors; arrays (n,).
+Samples = np.recarray[Any, Any]
+"""Points with a deviation of one quantity for one cause; their fields are those of `SAMPLE`."""
+SAMPLE = np.dtype([(name, float) for name in ("tabor", "radius_ratio", "poisson", "deviation", "error", "stretch")])
+
+
+def sampled(tabor: Array, radius_ratio: Array, poisson: Array, deviation: Array, error: Array) -> Samples:
+    """Relative deviations at n points, and the bounds of their errors, all (n,); with the stretch, beta/R.
 
     Poisson's ratio is nan where there is none.
     """
+    stretch = np.sqrt(tabor / radius_ratio)
+    return np.rec.fromarrays([tabor, radius_ratio, poisson, deviation, error, stretch], SAMPLE)
 
-    tabor: Array
-    radius_ratio: Array
-    poisson: Array
-    deviation: Array
-    error: Array
 
-    @property
-    def stretch(self) -> Array:
-        """beta/R = sqrt(mu/rho)."""
-        return np.asarray(np.sqrt(self.tabor / self.radius_ratio))
-
-    @property
-    def significant(self) -> Samples:
-        """Those that exceed their errors."""
-        return self.where(np.abs(self.deviation) > self.error)
-
-    def where(self, chosen: NDArray[np.bool_]) -> Samples:
-        """Those chosen."""
-        return Samples(*(getattr(self, field.name)[chosen] for field in fields(self)))
+def significant(data: Samples) -> Samples:
+    """Those that exceed their errors."""
+    found: Samples = data[np.abs(data.deviation) > data.error]
+    return found
 
 
 def samples(rows: Iterable[DeviationRow], cause: str, quantity: str, **at: float | None) -> Samples:
@@ -229,4 +221,4 @@ def samples(rows: Iterable[DeviationRow], cause: str, quantity: str, **at: float
         if (row.cause, row.quantity) == (cause, quantity) and row.deviation and row.known and row.radius_ratio
         if all(getattr(row, name) == value for name, value in at.items())
     ]
-    return Samples(*np.array(chosen, float).reshape(-1, len(fields(Samples))).T)
+    return sampled(*np.array(chosen, float).reshape(-1, 5).T)

@@ -35,7 +35,7 @@ from fem_adhesion.finite_sphere.chart import materials
 from fem_adhesion.finite_sphere.fit import leading_terms
 from fem_adhesion.finite_sphere.page import all_tables
 from fem_adhesion.finite_sphere.study import TABORS, Study, plan, run
-from fem_adhesion.finite_sphere.table import DeviationRow, Samples, rows
+from fem_adhesion.finite_sphere.table import DeviationRow, rows, sampled
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 from halfspace.profiles import Paraboloid, Sphere
@@ -259,7 +259,7 @@ def synthetic(law, noise=0.0, tabors=(0.1, 0.3, 1.0, 3.0, 10.0)):
     rng = np.random.default_rng(7)
     error = noise * np.abs(exact) + 1e-12
     deviation = exact + noise * np.abs(exact) * rng.uniform(-1, 1, mu.size)
-    return Samples(mu, rho, np.full_like(mu, 0.3), deviation, error)
+    return sampled(mu, rho, np.full_like(mu, 0.3), deviation, error)
 
 
 def test_the_fit_recovers_known_coefficients_from_noisy_data():
