@@ -73,21 +73,17 @@ class Study:
         return tuple(record for record in self.records if record.failed)
 
     @property
-    def left_out(self) -> tuple[Record, ...]:
-        """Cases that were not tried."""
-        return tuple(record for record in self.records if record.status == "left out")
-
-    @property
     def headline(self) -> str:
         """How the study went, in one line."""
-        tried, failed = len(self.records) - len(self.left_out), self.failed
+        failed, left_out = self.failed, sum(record.status == "left out" for record in self.records)
+        tried = len(self.records) - left_out
         kinds = Counter(record.kind or record.status for record in failed)
         ended = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
         lost = f"{len(failed)} of {counted(tried, 'case')} not solved ({ended})"
         parts = [
             "quick study, of few points" if self.quick else "",
             lost if failed else f"{counted(tried, 'case')}, all solved" if tried else "no case",
-            f"{counted(len(self.left_out), 'case')} left out, beyond the limits" if self.left_out else "",
+            f"{counted(left_out, 'case')} left out, beyond the limits" if left_out else "",
         ]
         return "; ".join(filter(None, parts))
 
