@@ -85,14 +85,9 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
         styles = dict(zip(bases, STYLES, strict=False))
         for method in methods:
             colour, marker = styles.get(method.basis, ("#000000", "o"))
-            look: dict[str, Any] = {
-                "color": colour,
-                "marker": marker,
-                "markersize": 7,
-                "linestyle": LINES[method.variant],
-            }
+            look: dict[str, Any] = {"color": colour, "marker": marker, "linestyle": LINES[method.variant]}
             face = "white" if method.variant else colour
-            draw_rungs(axes, study.of(method.name), method.name, **look, markerfacecolor=face)
+            draw_rungs(axes, study.of(method.name), method.name, **look, markersize=7, markerfacecolor=face)
         hidden = [rung for method in methods for rung in study.of(method.name) if rung.hidden(quantity)]
         draw_rungs(axes, hidden, "within that uncertainty", low=0.75, **HIDDEN)
         axes.set_title(f"{family}, judged by the {study.truths[family].family}")
@@ -124,12 +119,16 @@ def run_words(study: SpeedStudy) -> dict[str, Any]:
     return {"tabor": study.tabor, "quick": ", quick run" if study.quick else ""}
 
 
+NAMED: Columns[Timing] = {("method", "setting"): lambda rung: (rung.method, rung.setting)}
+ENDED: Columns[Timing] = {("outcome", "reason"): lambda rung: (rung.status, rung.reason)}
+
+
 def _rungs(study: SpeedStudy) -> Table:
     """Every rung; what is not known is left empty."""
     errors = tuple(f"{quantity}_{what}" for quantity in QUANTITIES for what in ("error", "truth_uncertainty"))
     columns: Columns[Timing] = {
         "tabor": lambda _: f"{study.tabor!r}",
-        ("method", "setting"): lambda rung: (rung.method, rung.setting),
+        **NAMED,
         "unknowns": lambda rung: "" if rung.unknowns is None else str(rung.unknowns),
         "seconds": lambda rung: _number(rung.seconds, "{:.4f}"),
         "yardsticks": lambda rung: _number(rung.seconds / study.yardstick, "{:.0f}"),
@@ -137,7 +136,7 @@ def _rungs(study: SpeedStudy) -> Table:
         errors: lambda rung: [
             _number(value, "{:.3e}") for q in QUANTITIES for value in (rung.error(q), rung.floors.get(q, math.nan))
         ],
-        ("outcome", "reason"): lambda rung: (rung.status, rung.reason),
+        **ENDED,
     }
     return Table.of("speed", "", "", study.rungs, columns)
 
@@ -160,11 +159,7 @@ def parts(study: SpeedStudy) -> Iterator[str | Table]:
         yield from (_beside(study, study.earlier, quantity) for quantity in study.quantities)
     yield _exponents(study)
     yield _growths(study)
-    failures: Columns[Timing] = {
-        ("method", "setting"): lambda rung: (rung.method, rung.setting),
-        ("outcome", "reason"): lambda rung: (rung.status, rung.reason),
-    }
-    yield _table("failures", (rung for rung in study.rungs if not rung.converged), failures)
+    yield _table("failures", (rung for rung in study.rungs if not rung.converged), {**NAMED, **ENDED})
 
 
 def _table(name: str, items: Iterable[Item], columns: Columns[Item], **numbers: Any) -> Table:
