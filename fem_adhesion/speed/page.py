@@ -79,7 +79,7 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
         if study.earlier:
             front = pareto_front(study.earlier[1], quantity)
             draw_rungs(axes, front, "that of the earlier run, in yardsticks", study.yardstick, **BESIDE)
-        axes.axhline(study.uncertainty(family, quantity), label="uncertainty of the truth", **FLOOR)
+        axes.axhline(study.truths[family].floors[quantity], label="uncertainty of the truth", **FLOOR)
         methods = [method for method in study.methods if method.family == family]
         bases = dict.fromkeys(method.basis for method in methods if method.basis not in ("adaptive", "hp"))
         styles = dict(zip(bases, STYLES, strict=False))

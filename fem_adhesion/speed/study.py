@@ -61,6 +61,11 @@ class Truth:
         """Error of a quantity, relative to its value or, of an approach, which has no size of its own, to the scale."""
         return error / (self.approach_scale if quantity == "jump_on" else abs(self.values[quantity].value))
 
+    @property
+    def floors(self) -> dict[str, float]:
+        """Its uncertainty in each quantity, relative: no error less than that can be told."""
+        return {name: self.relative(name, value.error) for name, value in self.values.items()}
+
 
 @dataclass(frozen=True)
 class Timing:
@@ -156,11 +161,6 @@ class SpeedStudy:
     def of(self, method: str) -> list[Timing]:
         """Rungs of a method by name."""
         return [rung for rung in self.rungs if rung.method == method]
-
-    def uncertainty(self, family: Family, quantity: str) -> float:
-        """Uncertainty of the truth that judges a family, on the scale of the errors."""
-        truth = self.truths[family]
-        return truth.relative(quantity, truth.values[quantity].error)
 
     def troubles(self) -> Iterator[str]:
         """What failed that should not have, a sentence each."""
@@ -301,13 +301,12 @@ def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) ->
     (unknowns, values), memory = outcome
     if again:
         seconds = min(seconds, _seconds(lambda: run(tabor)))
-    floors = {name: truth.relative(name, true.error) for name, true in truth.values.items()}
-    errors = {  # not below the truth's own uncertainty, since nothing less can be told
-        name: max(truth.relative(name, abs(values[name] - true.value)), floors[name])
-        for name, true in truth.values.items()
+    errors = {
+        name: max(truth.relative(name, abs(values[name] - truth.values[name].value)), floor)
+        for name, floor in truth.floors.items()
         if name in values
     }
-    return Timing(method, setting, "converged", seconds, "", unknowns, memory, errors, floors)
+    return Timing(method, setting, "converged", seconds, "", unknowns, memory, errors, truth.floors)
 
 
 # How the time grows

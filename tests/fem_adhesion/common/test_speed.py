@@ -328,7 +328,8 @@ def test_axes_are_labelled_with_what_is_drawn_along_them(distinct, quantity):
         assert list(line.get_xdata()) == [r.seconds for r in made]
         assert list(line.get_ydata()) == [r.errors[quantity] for r in made]
         floor = next(x for x in axes.lines if "uncertainty of the truth" in x.get_label())
-        assert set(floor.get_ydata()) == {distinct.uncertainty(family, quantity)}
+        truth, size = distinct.truths[family], {"pull_off": 5.0, "jump_on": 1.0, "hysteresis": 0.25}[quantity]
+        assert set(floor.get_ydata()) == {truth.values[quantity].error / size}
 
 
 def lines_of_page(study):
