@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -40,7 +41,7 @@ def by_atlas(units: Units) -> Array:
     """
     tabor = max(units.tabor, LEAST)
     if tabor > MOST:
-        return curves.jkr_with_reach(tabor, _sampling(tabor))[:2]
+        return _closed(curves.jkr_with_reach, units)
     curve = atlas.table(tabor, COUNT)
     (first, pull), (last, push) = curve[:, 0], curve[:, -1]
     h = (1 - first) * (FARTHEST * (1 + tabor) / (1 - first)) ** EVEN[:0:-1]
@@ -52,26 +53,20 @@ def by_atlas(units: Units) -> Array:
     return np.hstack([[1 - h, pull * ((1 - first) / h) ** 2], curve, [alpha, load]])
 
 
-def by_jkr(units: Units) -> Array:
-    """JKR's curve: no attraction before contact, so that eps is but the unit of the approach."""
-    return curves.jkr(units.tabor, _sampling(units.tabor))[:2]
+def _closed(curve: Callable[[float, curves.Sampling], Array], units: Units) -> Array:
+    """Curve of a theory in closed form."""
+    return curve(units.tabor, curves.Sampling(FARTHEST * (1 + units.tabor), WIDEST, COUNT))[:2]
 
 
-def by_dmt(units: Units) -> Array:
-    """A rigid sphere until it touches, then Hertz's contact under a constant tension (DMT-M)."""
-    return curves.dmt_maugis(units.tabor, _sampling(units.tabor))[:2]
+by_jkr: Theory = partial(_closed, curves.jkr)
+"""JKR's curve: no attraction before contact, so that eps is but the unit of the approach."""
 
-
-def by_maugis(units: Units) -> Array:
-    """Maugis's curve with the largest tension of the 3-9 law."""
-    return curves.maugis_dugdale(units.tabor, _sampling(units.tabor))[:2]
-
-
-def _sampling(tabor: float) -> curves.Sampling:
-    return curves.Sampling(FARTHEST * (1 + tabor), WIDEST, COUNT)
-
-
-THEORIES: Mapping[str, Theory] = {"atlas": by_atlas, "maugis-dugdale": by_maugis, "jkr": by_jkr, "dmt": by_dmt}
+THEORIES: Mapping[str, Theory] = {
+    "atlas": by_atlas,
+    "maugis-dugdale": partial(_closed, curves.maugis_dugdale),  # with the largest tension of the 3-9 law
+    "jkr": by_jkr,
+    "dmt": partial(_closed, curves.dmt_maugis),  # rigid until it touches, then Hertz's under a constant tension (DMT-M)
+}
 """Theories by name."""
 
 
