@@ -18,6 +18,9 @@ import numpy as np
 from fem_adhesion.fitting.model import Branches
 from halfspace.values import Array
 
+ORDER = (("separated", "contact"), ("contact", "separated"))
+"""Branches by segment, 0 the approach and 1 the retract, as they are recorded."""
+
 FEW = 5  # samples on either side of a division at least, of which a slope is known
 
 
@@ -32,9 +35,9 @@ class Run:
 
 @dataclass(frozen=True)
 class Place:
-    """Travel in m at which the data jump "on" or "off", its standard error, and whether that is of a uniform law."""
+    """Travel in m at which the data of a segment jump, its standard error, and whether that is of a uniform law."""
 
-    jump: str
+    segment: int
     travel: float
     error: float
     is_uniform: bool = True
@@ -138,7 +141,7 @@ class Data:
                 runs.append(run)
                 continue
             z, turn = self.travel[run.samples], found.place(run.segment)
-            names = ("contact", "separated") if run.segment else ("separated", "contact")
+            names = ORDER[run.segment]
             first, then = (np.interp(z, *getattr(found, name)) for name in names)
             size = abs(float(np.interp(turn, *found.contact) - np.interp(turn, *found.separated)))
             step = float(np.median(np.abs(np.diff(z))))
@@ -150,7 +153,7 @@ class Data:
             start, stop = run.samples.start, run.samples.stop
             parts = slice(start, start + i), slice(start + i, stop)
             runs += [Run(run.segment, branch, part) for branch, part in zip(names, parts, strict=True)]
-            places.append(Place("off" if run.segment else "on", float(between[i - 1]), error, is_uniform=False))
+            places.append(Place(run.segment, float(between[i - 1]), error, is_uniform=False))
         return replace(self, runs=runs, places=places)
 
 

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from fem_adhesion.common import style
+from fem_adhesion.fitting.data import ORDER
 from fem_adhesion.fitting.study import Fit
 
 COLOURS = (style.BLUE, style.RED)  # of approach and retract
@@ -30,8 +31,9 @@ def draw(fit: Fit) -> Figure:
         top.plot(x[run.samples], model[run.samples], color="black", linewidth=1.0)
         below.plot(x[run.samples], residuals, ".", markersize=2, color=colour)
     if found.jumps:
-        for at, branches in ((on, (found.separated, found.contact)), (off, (found.contact, found.separated))):
-            first, then = (float(np.interp(at + best.apparatus.contact_point, *branch)) for branch in branches)
+        for at, order in zip((on, off), ORDER, strict=True):
+            base = at + best.apparatus.contact_point
+            first, then = (float(np.interp(base, *getattr(found, branch))) for branch in order)
             style.arrow(top, (at, first), (at, then), color="0.4")
     for name, colour in zip(("approach", "retract"), COLOURS, strict=True):
         top.plot([], [], ".", color=colour, label=name)
@@ -49,13 +51,8 @@ def draw(fit: Fit) -> Figure:
     right.plot(best.apparatus.work_of_adhesion, best.apparatus.spacing, "+", color="black", markersize=10, label="best")
     style.dress(right, "work of adhesion", "spacing eps")
     right.set_title("does not fit" if fit.misfit else f"best model: {fit.model}", fontsize=11)
-    for axis, unit in (
-        (top.xaxis, "m"),
-        (top.yaxis, "N"),
-        (below.xaxis, "m"),
-        (right.xaxis, "J/m²"),
-        (right.yaxis, "m"),
-    ):
+    axes = top.xaxis, top.yaxis, below.xaxis, right.xaxis, right.yaxis
+    for axis, unit in zip(axes, ("m", "N", "m", "J/m²", "m"), strict=True):
         style.engineering_ticks(axis, unit)
     right.xaxis.set_major_locator(MaxNLocator(3))
     return figure

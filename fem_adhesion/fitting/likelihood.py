@@ -68,12 +68,13 @@ class Problem:
         value: float = getattr(self.start, name)
         if name in SCALES:
             return value * math.exp(min(max(x, -FARTHEST), FARTHEST))
-        return value + x * self._unit(name) if name == "contact_point" else max(value + x * self._unit(name), 0.0)
+        moved = value + x * self._units[name]
+        return moved if name == "contact_point" else max(moved, 0.0)
 
     def coordinate(self, name: str, value: float) -> float:
         """Coordinate of a value."""
         start: float = getattr(self.start, name)
-        return math.log(value / start) if name in SCALES else (value - start) / self._unit(name)
+        return math.log(value / start) if name in SCALES else (value - start) / self._units[name]
 
     @property
     def held(self) -> tuple[str, ...]:
@@ -88,12 +89,10 @@ class Problem:
         known, error = self.prior[name]
         return math.log(value / known) * known / error if name in SCALES else (value - known) / error
 
-    def _unit(self, name: str) -> float:
-        return self._displacement if name == "contact_point" else 1 / self.start.stiffness
-
     @cached_property
-    def _displacement(self) -> float:
-        return self.other.units(self.start).displacement
+    def _units(self) -> Mapping[str, float]:
+        """Units of the coordinates that are no logarithms."""
+        return {"contact_point": self.other.units(self.start).displacement, "compliance": 1 / self.start.stiffness}
 
     def branches(self, apparatus: Apparatus) -> Branches:
         """Branches as they are recorded."""
@@ -104,7 +103,7 @@ class Problem:
         apparatus = self.apparatus(x)
         found = self.branches(apparatus)
         samples = self.data.compared(self.data.modelled(found))
-        places = [((found.on if at.jump == "on" else found.off) - at.travel) / at.error for at in self.data.places]
+        places = [(found.place(at.segment) - at.travel) / at.error for at in self.data.places]
         known = [self.departure(name, getattr(apparatus, name)) for name in self.prior]
         return np.concatenate([samples, places, known, [self._wall(apparatus)]])
 
@@ -190,6 +189,12 @@ class Best:
     def rest(self) -> Array:
         """Whitened residuals, of the samples first."""
         return self.problem.residuals(self.x)
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """How many residuals are those of samples, of places of jumps, and others."""
+        places, others = len(self.problem.data.places), len(self.problem.prior) + 1
+        return len(self.jacobian) - places - others, places, others
 
     def residuals(self) -> Iterator[tuple[Run, Array]]:
         """Whitened residuals of the samples, run after run."""

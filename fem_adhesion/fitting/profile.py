@@ -80,9 +80,9 @@ class Profile:
         Thousands of samples make a normal error, but the share of a place in a parameter's error may be all of it.
         """
         influence = self.best.gradient(name) @ np.linalg.pinv(self.best.whole)
-        first = len(influence) - len(self.best.problem.data.places) - len(self.best.problem.prior) - 1
+        first, places, _ = self.best.counts
         uniform = [at.is_uniform for at in self.best.problem.data.places]
-        shares = (influence**2 / np.sum(influence**2))[first : first + len(uniform)] * uniform
+        shares = (influence**2 / np.sum(influence**2))[first : first + places] * uniform
         u, weights = np.polynomial.legendre.leggauss(32)
         parts = [math.sqrt(3 * share) * u for share in (*shares, 0.0, 0.0)[:2]]
         sums, weight = np.add.outer(*parts), np.multiply.outer(weights, weights) / 4

@@ -14,7 +14,7 @@ from scipy.stats import chi2, norm
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.common.scene_options import ATOM
-from fem_adhesion.fitting.data import Data, Place, Run
+from fem_adhesion.fitting.data import ORDER, Data, Place, Run
 from fem_adhesion.fitting.likelihood import MEAN_PULL_OFF, NORMAL, SCALES, Best, Problem
 from fem_adhesion.fitting.measured import APPROACH, BASE, ForceCurve, read
 from fem_adhesion.fitting.model import SOFTEST, STIFFEST, THEORIES, Apparatus, Other, Theory, by_atlas, by_jkr
@@ -251,17 +251,16 @@ def data_of(prepared: Prepared, stiffness: float) -> Data:
     curve = prepared.curve
     travel = curve.travel + (curve.force - prepared.background) / stiffness * (curve.coordinate == APPROACH)
     runs, places = list[Run](), list[Place]()
-    segments = (curve.approach, prepared.jump_on, "on"), (curve.retract, prepared.jump_off, "off")
-    for segment, (samples, jump, name) in enumerate(segments):
+    segments = (curve.approach, prepared.jump_on), (curve.retract, prepared.jump_off)
+    for segment, (samples, jump) in enumerate(segments):
         if jump is None:
             runs.append(Run(segment, "both", samples))
             continue
-        order = ("contact", "separated") if segment else ("separated", "contact")
         parts = slice(samples.start, jump.start + 1), slice(jump.stop, samples.stop)
-        runs += [Run(segment, branch, part) for branch, part in zip(order, parts, strict=True)]
+        runs += [Run(segment, branch, part) for branch, part in zip(ORDER[segment], parts, strict=True)]
         ends = travel[[jump.start, jump.stop]]
         step = float(np.median(np.abs(np.diff(travel[parts[0]]))))
-        places.append(Place(name, float(ends.mean()), max(step, abs(float(np.diff(ends)[0]))) / math.sqrt(12)))
+        places.append(Place(segment, float(ends.mean()), max(step, abs(float(np.diff(ends)[0]))) / math.sqrt(12)))
     noise = max(prepared.noise, 1e-6 * prepared.pull_off)  # a curve without noise is one of a millionth
     degree = max(far.line.degree() for far in prepared.baseline.values())
     steady = np.diff(curve.travel[curve.approach], 2)  # of a steady travel these are its errors' alone
@@ -306,7 +305,7 @@ def profile_of(
         x = np.zeros(len(problem.fitted))
         found = problem.branches(problem.apparatus(x))
         base, force = found.contact[:, np.argmin(found.contact[1]) :]
-        shifts = [at.travel - found.place(int(at.jump == "off")) for at in problem.data.places]
+        shifts = [at.travel - found.place(at.segment) for at in problem.data.places]
         shift = float(np.mean(shifts or prepared.contact - np.interp(0.0, force, base)))
         x[1] = problem.coordinate("contact_point", prepared.contact + shift)
         return x
@@ -333,11 +332,8 @@ def _hertz(prepared: Prepared, start: Mapping[str, float], other: Other) -> floa
 def values_of(profile: Profile) -> dict[str, Value]:
     """Values with intervals in SI; JKR's theory has no spacing."""
     best, problem = profile.best, profile.best.problem
-    names = [
-        name
-        for name in ("work_of_adhesion", "spacing", *problem.fitted[1:])
-        if name != "spacing" or problem.theory is not by_jkr
-    ]
+    spacing = () if problem.theory is by_jkr else ("spacing",)
+    names = ("work_of_adhesion", *spacing, *problem.fitted[1:])
     found = {name: Value(getattr(best.apparatus, name), *profile.interval(name), UNITS[name]) for name in names}
     for name in problem.held:
         value, relative = problem.prior[name].value, problem.prior[name].deviation / problem.prior[name].value

@@ -27,8 +27,8 @@ MISSED = 0.1  # share of the pull-off force by which a fit misses what a curve s
 SMALLEST = 2.3  # R/eps over tabor, of spheres of 1.5 beta, the smallest that are known
 DRAWN = 2.0  # standard errors from what was given at which the fit contradicts it
 KNOWN = 0.5  # half width of an interval of the logarithm from which a number counts as settled
-FINER = {"noise of a third": (3.0, 1.0), "ten times as many samples at the jumps": (1.0, 10.0)}
-"""Other measurements: how much smaller the error of the samples and that of the places of the jumps are."""
+FINER = {"noise of a third": (3.0, 1.0, 1.0), "ten times as many samples at the jumps": (1.0, 10.0, 1.0)}
+"""Other measurements: how much smaller the errors of samples, of the places of jumps, and all others are."""
 
 
 def sized(value: float, unit: str) -> str:
@@ -174,14 +174,7 @@ def remedies(fit: Fit) -> Iterator[str]:
         if value.identified or end is None or name not in ("spacing", *fit.best.problem.fitted):
             continue
         at = min(fit.profile.fits, key=lambda one: abs(math.log(getattr(one.apparatus, name) / end)))
-        samples = sum(at.problem.data.travel[run.samples].size for run in at.problem.data.runs)
-        row = np.arange(len(at.jacobian)) - samples
-        is_place = (row >= 0) & (row < len(at.problem.data.places))
-        helps = [
-            what
-            for what, (noise, place) in FINER.items()
-            if at.half_width(name, np.where(row < 0, noise, np.where(is_place, place, 1.0))) < KNOWN
-        ]
+        helps = [what for what, sharper in FINER.items() if at.half_width(name, np.repeat(sharper, at.counts)) < KNOWN]
         others = [each for each in at.problem.fitted[2:] if each != name]
         helps += [f"{NAMES[each]} measured apart" for each in others if at.half_width(name, exact=each) < KNOWN]
         shown = sized(end, value.unit)
@@ -210,6 +203,6 @@ def series(fit: Fit) -> Iterator[str]:
 def counted_samples(fit: Fit) -> str:
     """How much was fitted."""
     data = fit.best.problem.data
-    jumps = listed([f"jump {place.jump}" for place in data.places]) or "no jump"
+    jumps = listed([f"jump {('on', 'off')[place.segment]}" for place in data.places]) or "no jump"
     noise = f"noise {engineering(data.noise, 'N')}, correlation {data.correlation:.2f}"
     return f"{counted(data.travel.size, 'sample')}, {jumps}; {noise}"
