@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from fem_adhesion.common.jobs import Progress
-    from fem_adhesion.common.numbers import Measured
     from fem_adhesion.fitting.folder import Row, Source
 
 MEASURED = {
@@ -86,11 +85,12 @@ def run(options: argparse.Namespace) -> int:
 
     given = asked(options)
     if options.nanite:
-        plugin.write(options.nanite, **{name: _value(given[name]) for name in ("radius", "modulus", "poisson")})
-    if options.nanite and not options.curves:
-        return AGREE
+        tip = {name: given[name].value for name in ("radius", "modulus")}
+        plugin.write(options.nanite, **tip, poisson=given["poisson"])
+        if not options.curves:
+            return AGREE
     reading = {
-        "stiffness": _value(given["stiffness"]) if "stiffness" in given else None,
+        "stiffness": given["stiffness"].value if "stiffness" in given else None,
         "sensitivity": parse(options.detector, "detector") if options.detector else None,
     }
     curves = folder.sources(options.curves, **reading)
@@ -126,41 +126,28 @@ def _one(
     from fem_adhesion.fitting.measured import read
     from fem_adhesion.fitting.study import fit
 
-    curve = read(source.path, stiffness=reading["stiffness"], sensitivity=reading["sensitivity"])
-    found = fit(curve, **given, progress=step)
+    found = fit(read(source.path, number=source.number, **reading), **given, progress=step)
     row = source.named | terminal.record(found)
     return [row], row, terminal.report(found), partial(figure.draw, found)
 
 
-def _value(given: Any) -> float:
-    """Number without its standard error."""
-    return float(getattr(given, "value", given))
-
-
 def asked(options: argparse.Namespace) -> dict[str, Any]:
     """Arguments of `fem_adhesion.fit`, all but the curve."""
-    from fem_adhesion.common.numbers import parse
+    from fem_adhesion.common.numbers import Measured, measured, parse
 
     missing = [f"--{name}" for name in ("radius", "modulus", "poisson") if getattr(options, name) is None]
     if missing:
         raise InputError(f"{', '.join(missing)} missing, limit: radius, modulus and poisson; give it too")
     found: dict[str, Any] = {
-        name: quantity(text, name) for name in MEASURED if (text := getattr(options, name)) is not None
+        name: Measured(STARTS[name], math.inf) if text == "free" else measured(text, name)
+        for name in MEASURED
+        if (text := getattr(options, name)) is not None
     }
     for name in ("counter_modulus", "counter_radius"):
         if text := getattr(options, name):
             found[name] = parse(text, name)
     found |= {"poisson": options.poisson, "counter_poisson": options.counter_poisson}
     return found | ({"models": tuple(options.models)} if options.models else {})
-
-
-def quantity(text: str, name: str) -> Measured:
-    """Quantity that is exact, has a standard error, or is free."""
-    from fem_adhesion.common.numbers import Measured, measured
-
-    if text == "free":
-        return Measured(STARTS[name], math.inf)
-    return measured(text, name)
 
 
 COMMAND = Command(

@@ -47,9 +47,6 @@ class Source:
     path: Path
     number: int = 0
 
-    def __str__(self) -> str:
-        return f"{self.path.name} {self.number}" if makers.is_makers(self.path) else self.path.name
-
     @property
     def named(self) -> dict[str, Any]:
         """What a row says of its curve."""
@@ -100,7 +97,7 @@ def run(
         store,
         work=partial(work, reading=reading, **asked),
         inputs=inputs,
-        name=str,
+        name=lambda source: curve_of(source.named),
         write=dict,
         read=lambda source, row: {**row, **source.named},  # the store knows the curve by what is in its file
         died=lambda source, reason: source.named | {"reason": reason},

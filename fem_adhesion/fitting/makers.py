@@ -30,11 +30,16 @@ GIVEN = {"spring constant": "stiffness in N/m", "sensitivity": "sensitivity in m
 
 @dataclass(frozen=True)
 class Columns:
-    """Columns of a curve in SI, the travel first, the segment of each sample, and the spring constant of the file."""
+    """Columns of a curve in SI, the travel first, the segment of each sample, and the spring constant of the file.
+
+    Columns are named as in `fem_adhesion.fitting.measured.TRAVELS` and "force" or "deflection"; segments are None where
+    the file does not tell them, `told` is what was found about the columns, in sentences.
+    """
 
     values: Mapping[str, Array]
-    labels: Sequence[str]
+    labels: Sequence[str] | None
     stiffness: float | None
+    told: tuple[str, ...] = ()
 
 
 def is_makers(path: Path) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
@@ -91,13 +91,23 @@ def read(
         deflection comes without a stiffness; if the signs of its segments contradict each other.
     """
     path = Path(path)
-    if makers.is_makers(path):
-        curves = makers.load(path, stiffness, sensitivity)
-        if not 0 <= number < len(curves):
-            raise InputError(f"curve {number} of {path}, limit: 0 to {len(curves) - 1}; take one of these")
-        taken = curves[number]
-        return curve_of(path, taken.values, taken.labels, stiffness=stiffness, own=taken.stiffness)
-    text = _text(path)
+    curves = makers.load(path, stiffness, sensitivity) if makers.is_makers(path) else [_in_csv(path)]
+    if not 0 <= number < len(curves):
+        raise InputError(f"curve {number} of {path}, limit: 0 to {len(curves) - 1}; take one of these")
+    return _curve_of(path, curves[number], stiffness)
+
+
+def count(path: Path, *, stiffness: float | None = None, sensitivity: float | None = None) -> int:
+    """Number of curves in a file; the arguments as for `read`."""
+    return len(makers.load(path, stiffness, sensitivity)) if makers.is_makers(path) else 1
+
+
+def _in_csv(path: Path) -> makers.Columns:
+    """Columns of a CSV file."""
+    try:
+        text = path.read_text(encoding="utf-8-sig", errors="replace")  # letters stand in the header alone
+    except OSError as error:
+        raise InputError(f"{path} cannot be read ({error.strerror}); give a CSV file of a force curve") from error
     spring = SPRING.search(text)
     own = parse(spring[1].strip(), "stiffness") if spring else None
     lines = [(at, line) for at, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
@@ -119,19 +129,7 @@ def read(
         what: column * _unit(path, what, name) for (what, name), column in zip(columns.items(), numbers.T, strict=True)
     }
     labels = [row[names.index("segment")].strip().lower() for row in rows] if "segment" in names else None
-    return curve_of(path, values, labels, stiffness=stiffness, own=own, told=told)
-
-
-def count(path: Path, *, stiffness: float | None = None, sensitivity: float | None = None) -> int:
-    """Number of curves in a file; the arguments as for `read`."""
-    return len(makers.load(path, stiffness, sensitivity)) if makers.is_makers(path) else 1
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8-sig", errors="replace")  # letters stand in the header alone
-    except OSError as error:
-        raise InputError(f"{path} cannot be read ({error.strerror}); give a CSV file of a force curve") from error
+    return makers.Columns(values, labels, own, told)
 
 
 def _columns(path: Path, names: Sequence[str]) -> tuple[dict[str, str], tuple[str, ...]]:
@@ -175,23 +173,13 @@ def _row(path: Path, at: int, row: Sequence[str], wanted: Sequence[int]) -> list
     return numbers
 
 
-def curve_of(
-    path: Path,
-    values: Mapping[str, Array],
-    labels: Sequence[str] | None = None,
-    *,
-    stiffness: float | None = None,
-    own: float | None = None,
-    told: tuple[str, ...] = (),
-) -> ForceCurve:
-    """Curve of columns in SI, named as in `TRAVELS` and "force" or "deflection", with labels of segments if known.
-
-    `own` is the spring constant in N/m by which the forces were computed from deflections, where that is known.
+def _curve_of(path: Path, columns: makers.Columns, stiffness: float | None) -> ForceCurve:
+    """Curve of columns, on a spring of the stiffness in N/m if it is given.
 
     The signs are found: the approach goes towards the sample, and its last force is a compression unless the retract
     goes on in its direction, as after a turn in tension.
     """
-    (what, travel), (given, force) = values.items()
+    ((what, travel), (given, force)), own = columns.values.items(), columns.stiffness
     used = own if stiffness is None else require_positive(stiffness, "stiffness", "give it in N/m", "N/m")
     if given == "deflection":
         if used is None:
@@ -201,7 +189,7 @@ def curve_of(
         force = force * (used / own)
     if not (np.isfinite(travel).all() and np.isfinite(force).all()):
         raise InputError(f"{path} has samples that are no finite numbers, limit: none; leave them out")
-    parts, notes = _segments(path, travel, labels)
+    parts, notes = _segments(path, travel, columns.labels)
     (x, y), (back, pull) = ((travel[part], force[part]) for part in parts)
     fewest = min(x.size, back.size)
     if fewest < FEWEST:
@@ -219,7 +207,8 @@ def curve_of(
         notes = (*notes, f"The {given} was negative in compression and was turned round.")
     joined = way * np.concatenate([x, back]), sign * np.concatenate([y, pull])
     cut = slice(0, x.size), slice(x.size, x.size + back.size)
-    return ForceCurve(TRAVELS[what], *joined, *cut, given == "deflection" or own is not None, used, (*told, *notes))
+    by_deflection = given == "deflection" or own is not None
+    return ForceCurve(TRAVELS[what], *joined, *cut, by_deflection, used, (*columns.told, *notes))
 
 
 def _segments(path: Path, travel: Array, labels: Sequence[str] | None) -> tuple[tuple[slice, slice], tuple[str, ...]]:
