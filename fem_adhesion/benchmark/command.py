@@ -16,7 +16,7 @@ from fem_adhesion.common.options import (
     all_written,
     console_beside,
 )
-from fem_adhesion.common.scene_options import given, refuse
+from fem_adhesion.common.scene_options import refuse
 from halfspace.errors import InputError
 
 
@@ -72,8 +72,7 @@ def _write(options: argparse.Namespace) -> int:
     from fem_adhesion.benchmark import problems, terminal
     from fem_adhesion.common.files import directory_written_aside, writing
 
-    if unheeded := given(options, "json", "plot"):
-        raise InputError(f"{', '.join(unheeded)} would not be heeded, limit: with a CSV file; leave it out")
+    refuse(options, ("json", "plot"), "with a CSV file")
     asked = [problems.named(name) for name in options.names or problems.USUAL]
     for problem in asked:
         _ = problem.values  # solved for before anything is written

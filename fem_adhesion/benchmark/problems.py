@@ -37,11 +37,12 @@ USUAL = (
 RTOL = 1e-6  # asked of curves that the atlas does not have: a digit more than most codes give
 RADIUS, SPACING, WORK = 1e-6, 3e-10, 0.05  # m, m, J/m^2: a micrometre of silica or so, for numbers in SI
 LANDINGS = ("jump_on_landing", "jump_off_landing")  # the states after the jumps
-KINDS = {f"{state}_{kind}": kind for state in (*EVENTS, *LANDINGS) for kind in OBSERVABLES}
 KINDS = {
-    name: kind for name, kind in KINDS.items() if name != "zero_load_load" and not name.endswith("landing_approach")
-}
-KINDS |= {"energy": "energy", "energy_lost": "energy"}
+    f"{state}_{kind}": kind
+    for state in (*EVENTS, *LANDINGS)
+    for kind in OBSERVABLES
+    if (state, kind) != ("zero_load", "load") and not (state in LANDINGS and kind == "approach")
+} | {"energy": "energy", "energy_lost": "energy"}
 """Kind of each quantity, which has its unit, by its name."""
 
 PLACES = 1000  # on a curve of the atlas: how events change along it is then right to two thousandths

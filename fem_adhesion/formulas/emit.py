@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from importlib.metadata import version
-from importlib.resources import files
 from itertools import chain
 from pathlib import Path
 from string import Template
 
+from fem_adhesion.common.page import data_text
 from halfspace.theories import fits
 from halfspace.theories.closed_forms import ZERO_LOAD_RADIUS
 
@@ -19,8 +19,8 @@ def write(directory: Path) -> None:
     """Write all files into a directory."""
     words = _words()
     for name in NAMES:
-        template = files("fem_adhesion.formulas").joinpath("data", f"{name}.template").read_text(encoding="utf-8")
-        (directory / name).write_text(Template(template).substitute(words), encoding="utf-8")
+        template = Template(data_text("formulas", f"{name}.template"))
+        (directory / name).write_text(template.substitute(words), encoding="utf-8")
 
 
 def worst_errors() -> dict[str, str]:

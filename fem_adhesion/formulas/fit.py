@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from halfspace import atlas
 from halfspace.atlas import sphere
@@ -27,8 +28,6 @@ LOSING = atlas.birth_of_folds().value + np.geomspace(1e-5, 299.3, 1500)  # neare
 
 GRID = (24, 36, 9)  # points in tabor, R/eps and Poisson's ratio
 
-Columns = Callable[[Array], Array]
-
 
 def constants() -> dict[str, Any]:
     """Content of ``halfspace/theories/fits.json``: constants of the limits as they are, coefficients fitted to them."""
@@ -39,14 +38,14 @@ def constants() -> dict[str, Any]:
     A = np.column_stack([*((1 - f) * s**i for i in (1, 2, 3)), *(-f * s**i for i in (4, 5, 6, 7))])
 
     def below(x: Array) -> Array:
-        return _sum(s, [1, *x[:3]]) + c * s**3 + s**4 * _sum(s, x[3:])
+        return np.asarray(polyval(s, [1, *x[:3]]) + c * s**3 + s**4 * polyval(s, x[3:]))
 
     x = quotient(A, f * c * s**3 - (1 - f), below, load)
     found |= {"pull_off": [1.0, *x[:3]], "pull_off_below": [*x[3:]]}
     radius = atlas.zero_load(TABORS).contact_radius
     g, k = radius * s / fits.RIGID_RADIUS, ZERO_LOAD_RADIUS / fits.RIGID_RADIUS
     A = np.column_stack([*(s**i for i in (1, 2, 3, 4)), *(-g * s**i for i in (1, 2, 3)), k * s**5 - g * s**4])
-    x = quotient(A, g - 1, lambda x: _sum(s, [1, *x[4:]]), g)
+    x = quotient(A, g - 1, lambda x: polyval(s, [1, *x[4:]]), g)
     found |= {"zero_load": [1.0, *x[:4]], "zero_load_below": [1.0, *x[4:]]}
     on, off = atlas.jump_on(FOLDED).take_off.approach, atlas.jump_off(FOLDED).take_off.approach
     soft_on, soft_off = 1 - fits.ATTRACTION * FOLDED ** (3 / 7), -3 / 4 * np.pi ** (2 / 3) * FOLDED
@@ -100,10 +99,6 @@ def weighed_by(off: Array, weights: Array, floor: float) -> Array:
 def rounded(values: Sequence[float] | Array, digits: int) -> Any:
     """Lists of coefficients with so many significant digits."""
     return np.vectorize(lambda c: float(f"{c:.{digits}g}"))(values).tolist()
-
-
-def _sum(s: Array, coefficients: Sequence[float] | Array) -> Array:
-    return np.asarray(np.polynomial.polynomial.polyval(s, coefficients))
 
 
 if __name__ == "__main__":

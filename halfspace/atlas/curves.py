@@ -218,12 +218,11 @@ def tensors() -> Mapping[str, Array]:
 
 def curve(tabor: float) -> Curve:
     """Curve of a paraboloid on a half-space under the 3-9 law; InputError unless 0.01 <= tabor <= 300."""
-    tabor = require_number(tabor, "tabor")
-    require_tabors(tabor)
-    (k, by_tabor), known, gap = _by_tabor(tabor), tensors(), series("zero_load.central_gap")
+    (tabor, k, by_tabor), known = _by_tabor(tabor), tensors()
     # Whole numbers of a unit, (terms in tabor, 3, pieces, terms).
     coefficients = np.tensordot(by_tabor, known["coefficients"][k], axes=1) * known["units"][k][..., None]
-    return Curve(tabor, *layout(tabor, gap), np.swapaxes(coefficients, 1, 2).copy(), known["errors"][k])
+    width, ends = layout(tabor, series("zero_load.central_gap"))
+    return Curve(tabor, width, ends, np.swapaxes(coefficients, 1, 2).copy(), known["errors"][k])
 
 
 def table(tabor: float, count: int) -> Array:
@@ -231,9 +230,7 @@ def table(tabor: float, count: int) -> Array:
 
     For many Tabor parameters: sums over the places are made once for each piece of the Tabor parameter.
     """
-    tabor = require_number(tabor, "tabor")
-    require_tabors(tabor)
-    k, by_tabor = _by_tabor(tabor)
+    tabor, k, by_tabor = _by_tabor(tabor)
     further, load = np.tensordot(by_tabor, _summed_at_places(k, count), axes=1)
     width, ends = layout(tabor, series("zero_load.central_gap"))
     places = np.linspace(0, ends.size - 1, count)
@@ -251,9 +248,11 @@ def _summed_at_places(k: int, count: int) -> Array:
     return np.asarray(np.einsum("tqnc,nc->tqn", coefficients[:, :, piece], across))
 
 
-def _by_tabor(tabor: float) -> tuple[int, Array]:
-    """Piece of the Tabor parameter, and the Chebyshev polynomials on it there."""
+def _by_tabor(tabor: float) -> tuple[float, int, Array]:
+    """Tabor parameter, or InputError if it is none of the atlas, its piece, and the Chebyshev polynomials there."""
+    tabor = require_number(tabor, "tabor")
+    require_tabors(tabor)
     x, ends = math.log(tabor), tensors()["ends"]
     k = int(np.clip(np.searchsorted(ends, x, side="right") - 1, 0, ends.size - 2))
     t = (2 * x - ends[k] - ends[k + 1]) / (ends[k + 1] - ends[k])
-    return k, np.polynomial.chebyshev.chebvander(t, len(tensors()["coefficients"][k]) - 1)[0]
+    return tabor, k, np.polynomial.chebyshev.chebvander(t, len(tensors()["coefficients"][k]) - 1)[0]
