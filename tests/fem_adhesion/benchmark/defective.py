@@ -11,55 +11,42 @@ from fem_adhesion import Block, Scene, trace
 from halfspace import atlas
 from halfspace.elastic import compliance, grid
 from halfspace.laws import LENNARD_JONES
-from halfspace.scaling import Units, contact_modulus, equivalent_radius
+from halfspace.scaling import Units
 from halfspace.theories import closed_forms
 
-EVENTS = ("pull_off", "zero_load", "jump_on", "jump_off")
 KINDS = ("approach", "load", "contact_radius")
 
 
-def true(tabor):
-    """What the atlas has."""
-    on, off = atlas.jump_on(tabor).take_off, atlas.jump_off(tabor).take_off
-    states = dict(zip(EVENTS, (atlas.pull_off(tabor), atlas.zero_load(tabor), on, off), strict=True))
+def numbers(states):
+    """Numbers of states, those that there are; the load under no load is none."""
     found = {f"{name}_{kind}": float(getattr(state, kind)) for name, state in states.items() for kind in KINDS}
     return {name: value for name, value in found.items() if math.isfinite(value) and name != "zero_load_load"}
 
 
-def in_si(units):
-    """What a code with these ideas of R, E* and dgamma gives, in SI."""
-    sizes = {"approach": units.approach, "load": units.load, "contact_radius": units.length}
-    return {
-        name: value * next(s for kind, s in sizes.items() if name.endswith(kind))
-        for name, value in true(units.tabor).items()
-    }
+def events(tabor):
+    """States that the atlas has."""
+    states = {"pull_off": atlas.pull_off(tabor), "zero_load": atlas.zero_load(tabor)}
+    return states | {"jump_on": atlas.jump_on(tabor).take_off, "jump_off": atlas.jump_off(tabor).take_off}
 
 
-def material(tabor, young=1e9, poisson=0.3, gamma=0.03, radius=1e-6, *, equal=False):
-    """A contact of a Tabor parameter: its true `Units`, from R of one body, E, nu and gamma = dgamma/2."""
-    other = (radius, young, poisson) if equal else (math.inf, math.inf, 0.0)
-    R, E = equivalent_radius(radius, other[0]), contact_modulus(young, poisson, *other[1:])
-    return Units(R, E, 2 * gamma, math.cbrt(R * (2 * gamma / E) ** 2) / tabor)
-
-
-def reduced(values, units):
-    """SI into R dgamma, eps, beta."""
-    sizes = {"approach": units.approach, "load": units.load, "contact_radius": units.length}
-    return {name: value / next(s for kind, s in sizes.items() if name.endswith(kind)) for name, value in values.items()}
+def true(tabor):
+    """What the atlas has."""
+    return numbers(events(tabor))
 
 
 def mistaken(tabor, *, modulus=1.0, work=1.0, radius=1.0):
-    """What a code computes in SI that takes E*, dgamma or R for so many times what it is."""
-    units = material(tabor)
-    wrong = Units(units.radius * radius, units.modulus * modulus, units.work_of_adhesion * work, units.spacing)
-    return reduced(in_si(wrong), units)
+    """What a code computes in SI that takes E*, dgamma or R for so many times what it is, in the true units."""
+    R, E, dgamma = 1e-6, 1.1e9, 0.06
+    eps = math.cbrt(R * (dgamma / E) ** 2) / tabor
+    own, wrong = Units(R, E, dgamma, eps), Units(R * radius, E * modulus, dgamma * work, eps)
+    sizes = {"approach": 1.0, "load": wrong.load / own.load, "contact_radius": wrong.length / own.length}
+    values = true(wrong.tabor).items()
+    return {name: value * next(sizes[kind] for kind in KINDS if name.endswith(kind)) for name, value in values}
 
 
 def clamped(tabor, size):
     """Finite elements on a block that is clamped at a radius in beta."""
-    events = trace(Scene(tabor, Block(radius=size, far_field="clamped")), rtol=1e-3).events
-    found = {f"{name}_{kind}": getattr(event, kind) for name, event in events.items() for kind in KINDS}
-    return {name: value for name, value in found.items() if name in true(tabor)}
+    return numbers(trace(Scene(tabor, Block(radius=size, far_field="clamped")), rtol=1e-3).events)
 
 
 def coarse(tabor, spacing, extent=12.0):
@@ -119,10 +106,8 @@ def stepped(tabor, step, start=0.0):
 
 def jkr(tabor):
     """JKR's closed forms."""
-    states = {"pull_off": closed_forms.jkr_pull_off(tabor), "jump_off": closed_forms.jkr_jump_off(tabor)}
-    states["zero_load"] = closed_forms.jkr_zero_load(tabor)
-    found = {f"{name}_{kind}": getattr(state, kind) for name, state in states.items() for kind in KINDS}
-    return {name: value for name, value in found.items() if name != "zero_load_load"}
+    names = ("pull_off", "jump_off", "zero_load")
+    return numbers({name: getattr(closed_forms, f"jkr_{name}")(tabor) for name in names})
 
 
 def hertz_radius(tabor):

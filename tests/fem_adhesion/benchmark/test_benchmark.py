@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import re
+from dataclasses import replace
 
 import defective
 import numpy as np
@@ -37,31 +38,24 @@ def judged(tmp_path, capsys):
     return judge
 
 
-def without(values, *words):
-    return {name: value for name, value in values.items() if not any(word in name for word in words)}
-
-
-def replaced(values, source, target):
-    return values | {name.replace(source, target): v for name, v in values.items() if name.startswith(source)}
-
-
-def gaps_of(tabor):
-    on, off = atlas.jump_on(tabor).take_off, atlas.jump_off(tabor).take_off
-    states = {"pull_off": atlas.pull_off(tabor), "zero_load": atlas.zero_load(tabor), "jump_on": on, "jump_off": off}
-    return {name: float(state.central_gap) for name, state in states.items()}
-
-
 def central_gaps(tabor, sign):
-    gaps = {f"{name}_approach": sign * gap for name, gap in gaps_of(tabor).items()}
-    return {name: gaps.get(name, value) for name, value in defective.true(tabor).items()}
+    states = defective.events(tabor).items()
+    return defective.numbers({name: replace(state, approach=sign * state.central_gap) for name, state in states})
 
 
 def distances(tabor):
-    return defective.true(tabor) | {f"{name}_central_gap": 1 + gap for name, gap in gaps_of(tabor).items()}
+    gaps = {f"{name}_central_gap": float(1 + state.central_gap) for name, state in defective.events(tabor).items()}
+    return defective.true(tabor) | gaps
 
 
 def scaled_loads(tabor, factor):
-    return {name: v * (factor if "load" in name.split("_")[-1] else 1) for name, v in defective.true(tabor).items()}
+    states = defective.events(tabor).items()
+    return defective.numbers({name: replace(state, load=factor * state.load) for name, state in states})
+
+
+def torn(tabor):
+    states = defective.events(tabor)
+    return defective.numbers(states | {"jump_off": states["pull_off"]})
 
 
 # Cause, tabor, what such a code gives, digits written. No constant of the causes was taken from these sizes.
@@ -84,10 +78,10 @@ DEFECTS = [
     ("distance-for-gap", 2.2, distances, 4),
     ("sign-of-loads", 0.5, lambda mu: scaled_loads(mu, -1.0), 6),
     ("sign-of-loads", 2.0, lambda mu: scaled_loads(mu, -1.0), 4),
-    ("load-control-tear-off", 1.6, lambda mu: replaced(defective.true(mu), "pull_off", "jump_off"), 5),
-    ("hertz-radius-in-jkr", 3.0, lambda mu: defective.hertz_radius(mu), 5),
-    ("jkr-for-intermediate", 0.8, lambda mu: defective.jkr(mu), 4),
-    ("jkr-for-intermediate", 3.5, lambda mu: defective.jkr(mu), 7),
+    ("load-control-tear-off", 1.6, torn, 5),
+    ("hertz-radius-in-jkr", 3.0, defective.hertz_radius, 5),
+    ("jkr-for-intermediate", 0.8, defective.jkr, 4),
+    ("jkr-for-intermediate", 3.5, defective.jkr, 7),
 ]
 
 
@@ -104,11 +98,9 @@ def test_jumps_of_a_stepped_code_are_named(judged):
     leaps = np.abs(np.diff(curve[:, 1]))
     half = len(curve) // 2
     on, off = int(np.argmax(leaps[: half - 1])) + 1, half + int(np.argmax(leaps[half:])) + 1
-    values = without(defective.true(tabor), "jump") | {
-        "jump_on_approach": curve[on, 0],
-        "jump_off_approach": curve[off, 0],
-    }
     least = int(np.argmin(curve[:, 1]))
+    values = {name: value for name, value in defective.true(tabor).items() if "jump" not in name}
+    values |= {"jump_on_approach": curve[on, 0], "jump_off_approach": curve[off, 0]}
     values |= {"pull_off_approach": curve[least, 0], "pull_off_load": curve[least, 1]}
     found = judged(of_problem(tabor, defective.rounded(values, 7)))
     assert (found["cause"], found["alike"]) == ("sampled-jumps", [])
