@@ -31,10 +31,10 @@ def one(seed):
     truth = Apparatus(RADIUS, modulus, WORK, SPACING, 2e-7, stiffness * RADIUS * WORK / SPACING, sensitivity)
     offset, drift = 0.05 * size * rng.normal(size=2)
     noise = NOISES[seed % len(NOISES)] * size
-    data = synthetic(truth, Other(POISSON), rng, noise=noise, correlation=0.3, offset=offset, drift=drift)
+    curve = synthetic(truth, Other(POISSON), rng, noise=noise, correlation=0.3, offset=offset, drift=drift)
     given = {"radius": RADIUS, "modulus": modulus, "poisson": POISSON, "stiffness": truth.stiffness}
     begin = time.process_time()
-    found = fit(data.curve, **given, sensitivity=Measured(1.0, math.inf), models=())
+    found = fit(curve, **given, sensitivity=Measured(1.0, math.inf), models=())
     seconds = time.process_time() - begin
     held, widths = {}, {}
     for name in NAMES:

@@ -2,28 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from fem_adhesion.fitting.measured import ForceCurve
 from fem_adhesion.fitting.model import Apparatus, Other, Theory, by_atlas, recorded
-
-
-@dataclass(frozen=True)
-class Synthetic:
-    """Travel in m and force in N of approach and retract, and the samples of each."""
-
-    travel: np.ndarray
-    force: np.ndarray
-    count: int
-
-    @property
-    def curve(self) -> ForceCurve:
-        """As a measured curve."""
-        return ForceCurve(
-            "base", self.travel, self.force, slice(0, self.count), slice(self.count, 2 * self.count), False
-        )
 
 
 def synthetic(
@@ -39,7 +23,7 @@ def synthetic(
     offset: float = 0.0,
     drift: float = 0.0,
     theory: Theory = by_atlas,
-) -> Synthetic:
+) -> ForceCurve:
     """`noise` and `offset` in N, `drift` in N per segment, `pressed` in pull-off forces, `baseline` of the travel."""
     units = other.units(truth)
     found = recorded(theory(units), truth, units)
@@ -49,12 +33,19 @@ def synthetic(
     nearest = min(found.off, found.on) - 0.05 * (last - found.off)
     first = last - (last - nearest) / (1 - baseline)
     way_in = np.linspace(first, last, count) + rng.uniform() * (last - first) / count
-    way_out = way_in[::-1]
-    f_in = np.where(way_in < found.on, np.interp(way_in, *found.separated), np.interp(way_in, *found.contact))
-    f_out = np.where(way_out < found.off, np.interp(way_out, *found.separated), np.interp(way_out, *found.contact))
-    travel, clean = np.concatenate([way_in, way_out]), np.concatenate([f_in, f_out])
+    travel, jump = np.concatenate([way_in, way_in[::-1]]), np.repeat([found.on, found.off], count)
+    clean = np.where(travel < jump, np.interp(travel, *found.separated), np.interp(travel, *found.contact))
     shocks = rng.normal(size=2 * count + 200) * noise * np.sqrt(1 - correlation**2)
     for i in range(1, shocks.size):
         shocks[i] += correlation * shocks[i - 1]
     slope = offset + drift * (travel - first) / (last - first)
-    return Synthetic(travel, clean + shocks[200:] + slope, count)
+    return ForceCurve("base", travel, clean + shocks[200:] + slope, slice(0, count), slice(count, 2 * count), False)
+
+
+def write(path: Path, curve: ForceCurve) -> None:
+    """Write a curve as CSV."""
+    lines = ["piezo_m,force_N,segment"]
+    for way in ("approach", "retract"):
+        samples = (values[getattr(curve, way)].tolist() for values in (curve.travel, curve.force))
+        lines += [f"{x!r},{force!r},{way}" for x, force in zip(*samples, strict=True)]
+    path.write_text("\n".join(lines))

@@ -8,7 +8,7 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 import pytest
-from synthetic_curves import synthetic
+from synthetic_curves import synthetic, write
 from whole_runs import COMPARE, GREENWOOD, ROOT
 
 from fem_adhesion import cli
@@ -112,10 +112,8 @@ def written(folder):
     """What the lines need: two force curves, and a table for the benchmark."""
     truth = Apparatus(50e-9, 5e9, 0.05, 0.3e-9, 0.0, 2.0)
     for seed, name in enumerate(("one.csv", "two.csv")):
-        data = synthetic(truth, Other(0.3), np.random.default_rng(seed), noise=5e-11, count=200)
-        ways = ["approach"] * data.count + ["retract"] * data.count
-        rows = [f"{x:.9g},{f:.9g},{way}" for x, f, way in zip(data.travel, data.force, ways, strict=True)]
-        (folder / name).write_text("\n".join(["piezo_m,force_N,segment", *rows]))
+        curve = synthetic(truth, Other(0.3), np.random.default_rng(seed), noise=5e-11, count=200)
+        write(folder / name, curve)
     load = float(atlas.pull_off(1.0).load)
     (folder / "their.csv").write_text(f"problem,quantity,value\nhalf-space-1,pull_off_load,{load:.6f}\n")
 

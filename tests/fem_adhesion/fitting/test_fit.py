@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from iminuit import Minuit
 from scipy.stats import chi2
-from synthetic_curves import synthetic
+from synthetic_curves import synthetic, write
 
 import fem_adhesion
 import halfspace
@@ -32,14 +32,14 @@ def _truth(tabor, spacing, stiffness, **more):
     return Apparatus(RADIUS, modulus, WORK, spacing, 2e-7, stiffness * RADIUS * WORK / spacing, **more)
 
 
-def _fit(truth, noise, seed=2, theory=None, models=(), count=250, **more):
+def _fit(truth, noise, seed=2, theory=by_atlas, models=(), count=250, **more):
     """Fit of a synthetic curve with noise as a part of the pull-off force."""
     size = 2 * np.pi * RADIUS * WORK
     rng = np.random.default_rng(seed)
     made = {"noise": noise * size, "correlation": 0.3, "offset": 0.1 * size, "drift": 0.05 * size, "count": count}
-    data = synthetic(truth, Other(POISSON), rng, **made, **({"theory": theory} if theory else {}))
+    data = synthetic(truth, Other(POISSON), rng, **made, theory=theory)
     given = {"radius": RADIUS, "modulus": truth.modulus, "poisson": POISSON, "stiffness": truth.stiffness}
-    return fem_adhesion.fit(data.curve, **given | {"sensitivity": FREE} | more, models=models)
+    return fem_adhesion.fit(data, **given | {"sensitivity": FREE} | more, models=models)
 
 
 def _holds(value, truth):
@@ -203,11 +203,8 @@ def test_what_is_known_before_narrows_what_is_free():
 
 def test_the_command_writes_what_it_found(tmp_path, capsys):
     truth = _truth(1.0, 0.3e-9, 0.2)
-    data = synthetic(truth, Other(POISSON), np.random.default_rng(3), noise=1e-10, count=200)
-    ways = np.repeat(["approach", "retract"], 200)
-    rows = [f"{z},{f},{way}" for z, f, way in zip(data.travel, data.force, ways, strict=True)]
     file, out, plot = tmp_path / "curve.csv", tmp_path / "out.json", tmp_path / "fit.png"
-    file.write_text("\n".join(["piezo_m,force_N,segment", *rows]))
+    write(file, synthetic(truth, Other(POISSON), np.random.default_rng(3), noise=1e-10, count=200))
     given = f"--radius 50nm --modulus {truth.modulus}Pa --poisson 0.3 --stiffness {truth.stiffness}N/m".split()
     assert cli.main(["fit", str(file), *given, "--models", "jkr", "--json", str(out), "--plot", str(plot)]) == 0
     record = json.loads(out.read_text())

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_curves import synthetic
+from synthetic_curves import synthetic, write
 
 from fem_adhesion import cli
 from fem_adhesion.common.files import open_store
@@ -104,18 +104,11 @@ CONTACT = ["--radius", "50nm", "--modulus", "10GPa", "--poisson", "0.3", "--stif
 TRUTH = Apparatus(50e-9, 10e9, 0.05, 0.3e-9, 2e-7, 5.0)
 
 
-def _write(path):
-    made = {"noise": 5e-11, "correlation": 0.3, "offset": 1e-9, "drift": 0.0, "count": 80}
-    curve = synthetic(TRUTH, Other(0.3), np.random.default_rng(1), **made).curve
-    segments = np.repeat(["approach", "retract"], made["count"])
-    lines = zip(curve.travel.tolist(), curve.force.tolist(), segments, strict=True)
-    path.write_text("piezo_m,force_N,segment\n" + "\n".join(f"{x!r},{f!r},{name}" for x, f, name in lines))
-
-
 def test_the_command_fits_what_it_can_of_a_folder(curves, tmp_path, capsys):
     table, record, kept = (tmp_path / name for name in ("fits.csv", "fits.json", "kept"))
     (curves / "spectroscopy_two.nid").unlink()
-    _write(curves / "second.csv")
+    made = {"noise": 5e-11, "correlation": 0.3, "offset": 1e-9, "count": 80}
+    write(curves / "second.csv", synthetic(TRUTH, Other(0.3), np.random.default_rng(1), **made))
     names = ["--csv", str(table), "--json", str(record), "--plot", str(tmp_path / "fits.svg"), "--resume", str(kept)]
     asked = ["fit", str(curves), *CONTACT, "--models", "jkr", "--jobs", "1", *names]
     assert cli.main(asked) == 1

@@ -1,49 +1,28 @@
 """Measured curves: read whatever their signs and units, prepared, and refused in one line."""
 
-import math
-
 import numpy as np
 import pytest
+from synthetic_curves import synthetic
 
 from fem_adhesion.fitting.measured import read
+from fem_adhesion.fitting.model import Apparatus, Other
 from fem_adhesion.fitting.prepare import prepare
 from halfspace import atlas
 from halfspace.errors import InputError
-from halfspace.scaling import Units
 
-UNITS = Units(radius=100e-9, modulus=10e9, work_of_adhesion=0.05, spacing=0.3e-9)
 STIFFNESS = 10.0  # N/m
-FORCE = UNITS.radius * UNITS.work_of_adhesion
-IN_UNITS = STIFFNESS * UNITS.spacing / FORCE
+TRUTH = Apparatus(100e-9, 10e9, 0.05, 0.3e-9, contact_point=0.0, stiffness=STIFFNESS)
+UNITS = Other(poisson=0.0).units(TRUTH)
+FORCE = UNITS.load
 NOISE, CORRELATION = 2e-3 * FORCE, 0.6
 OFFSET, SLOPE = 3 * FORCE, 0.002 * FORCE / UNITS.spacing  # of the baseline, which the retract has a tenth higher
-ATLAS = atlas.curve(UNITS.tabor)
-FAR, NEAR = -400.0, 28.0  # travel of the base in eps
 
 
-def _loads(base, turn):
-    """Loads at bases on the contact branch beyond a turn, before it on the separated one and as 1/gap^2 beyond that."""
-    farthest = ATLAS.branches("base", stiffness=IN_UNITS)["separated"][0]
-    touching, far = base > turn, base < min(turn, farthest)
-    loads = np.empty(base.size)
-    for branch, here in (("contact", touching), ("separated", ~touching & ~far)):
-        loads[here] = ATLAS.at(base=base[here], stiffness=IN_UNITS, branch=branch).load
-    last = ATLAS.at(base=farthest, stiffness=IN_UNITS, branch="separated").load
-    loads[far] = last * (farthest / base[far]) ** 2
-    return loads
-
-
-def _made(far=FAR, points=1000, seed=5):
+def _made(baseline=0.92, count=1000, seed=5):
     """Travel in m and force in N of an approach and of its retract."""
-    base = np.linspace(far, NEAR, points)
-    ranges = ATLAS.branches("base", stiffness=IN_UNITS)
-    loads = np.concatenate([_loads(base, ranges["separated"][1]), _loads(base, ranges["contact"][0])[::-1]])
-    white = np.random.default_rng(seed).normal(size=2 * points) * NOISE
-    for i in range(1, white.size):
-        white[i] = CORRELATION * white[i - 1] + math.sqrt(1 - CORRELATION**2) * white[i]
-    travel = np.concatenate([base, base[::-1]]) * UNITS.spacing
-    drift = np.repeat([1.0, 1.1], points) * OFFSET + SLOPE * travel
-    return travel, loads * FORCE + drift + white
+    made = {"noise": NOISE, "correlation": CORRELATION, "count": count, "baseline": baseline, "pressed": 2.0}
+    curve = synthetic(TRUTH, Other(poisson=0.0), np.random.default_rng(seed), **made)
+    return curve.travel, curve.force + np.repeat([1.0, 1.1], count) * OFFSET + SLOPE * curve.travel
 
 
 TRAVEL, LOADED = _made()
@@ -109,7 +88,7 @@ def test_a_turn_in_tension_is_no_compression(written):
 
 
 def test_preparing_finds_what_was_put_in(plain):
-    found, ranges = prepare(plain), ATLAS.branches("base", stiffness=IN_UNITS)
+    found, ranges = prepare(plain), atlas.curve(UNITS.tabor).branches("base", stiffness=STIFFNESS / UNITS.stiffness)
     step, spacing = np.diff(TRAVEL)[0], UNITS.spacing
     zero = atlas.zero_load(UNITS.tabor).approach
     assert found.contact == pytest.approx(zero * spacing, abs=step)
@@ -126,7 +105,7 @@ def test_preparing_finds_what_was_put_in(plain):
 
 
 def test_the_wave_of_interfering_light_is_no_noise(written):
-    travel, loaded = _made(far=-3000.0, points=4000)
+    travel, loaded = _made(baseline=0.99, count=4000)
     amplitude, period, jump = 0.05 * FORCE, 330e-9, -5 * UNITS.spacing
     wave = amplitude * np.sin(2 * np.pi * np.minimum(travel, jump) / period + 1.0)
     flat, found = (prepare(read(written(piezo_m=travel, force_N=force))) for force in (loaded, loaded + wave))
@@ -136,7 +115,7 @@ def test_the_wave_of_interfering_light_is_no_noise(written):
         assert baseline.amplitude == pytest.approx(amplitude, rel=0.05)
         assert baseline.period == pytest.approx(period, rel=0.02)
     assert found.background - wave == pytest.approx(flat.background, abs=5 * NOISE)  # in contact too
-    assert "a wave of 250 pN and a period of 33" in found.told[-1]
+    assert "a wave of 249.7 pN and a period of 329.3 nm" in found.told[-1]
     assert not any("wave" in line for line in flat.told)
 
 
