@@ -151,7 +151,10 @@ def test_intervals_are_those_of_minos():
 def _by_trace(**parts):
     """Theory of a contact of tabor 1 that the solver knows and no table."""
     path = halfspace.trace(1.0, rtol=1e-4, to_load=7.0, **parts).resampled(600)
-    return lambda _: _continued(path.approach, path.load)
+    nearest = 1 - path.approach[0]
+    gaps = nearest * np.geomspace(1e6, 1, 200)[:-1]
+    attracted = [1 - gaps, path.load[0] * (nearest / gaps) ** 2]  # as h^-2 before it
+    return lambda _: np.hstack([attracted, [path.approach, path.load]])
 
 
 def test_a_layer_shows_in_the_residuals_on_a_stiff_spring():
@@ -179,12 +182,6 @@ def test_what_a_finite_sphere_does_to_dgamma_is_told():
     assert corrected == pytest.approx(WORK, rel=0.02)
     large = _fit(_truth(1.0, 0.1e-9, 0.1), 0.01)
     assert not any(line.startswith("A whole sphere") for line in words.warnings(large))
-
-
-def _continued(approach, load):
-    """A curve with an attraction of h^-2 before it."""
-    h = (1 - approach[0]) * np.geomspace(1e6, 1, 200)[:-1]
-    return np.hstack([[1 - h, load[0] * ((1 - approach[0]) / h) ** 2], [approach, load]])
 
 
 def test_what_is_known_before_narrows_what_is_free():

@@ -29,12 +29,9 @@ def test_numbers_are_those_of_finite_elements_where_none_was_fitted(solved):
 
 
 def test_check_points_are_met():
-    assert {point["number"] for point in POINTS} == {f"{name}.{number}" for name in EVENTS for number in SCALES}
+    assert {point["number"] for point in POINTS} == {f"{name}.{number}" for name in EVENTS for number in sphere.NUMBERS}
     assert max(point["of_errors"] for point in POINTS) <= 1
     assert max(point["relative"] for point in POINTS) <= 1e-4
-
-
-SCALES = ("load", "approach")
 
 
 def test_a_source_that_has_changed_is_found(solved):
@@ -61,7 +58,7 @@ def test_pieces_join_within_their_errors():
     tabor, nu = np.meshgrid(np.geomspace(0.05, 9.9, 30), np.linspace(0, 0.49, 7))
     for ratio in sphere.RATIOS[1:-1]:
         before, after = (sphere.pull_off(tabor, ratio * (1 + side * 1e-12), nu) for side in (-1, 1))
-        for number in SCALES:
+        for number in sphere.NUMBERS:
             gap = np.abs(getattr(after, number) - getattr(before, number))
             assert (gap <= getattr(after, f"{number}_error") + getattr(before, f"{number}_error")).all()
     ratio, nu = np.meshgrid(np.geomspace(5, 1e5, 30), np.linspace(0, 0.49, 7))
@@ -72,7 +69,7 @@ def test_pieces_join_within_their_errors():
 
 
 def test_beside_the_half_space_it_is_its_own():
-    found, half = sphere.jump_off([0.5, 3.0][1], 60.0), atlas.jump_off(3.0).take_off
+    found, half = sphere.jump_off(3.0, 60.0), atlas.jump_off(3.0).take_off
     assert found.load_ratio * half.load == pytest.approx(found.load, rel=1e-14)
     assert found.approach_excess + half.approach == pytest.approx(found.approach, rel=1e-14)
     assert found.load_ratio_error * -half.load == pytest.approx(found.load_error, rel=1e-12)
