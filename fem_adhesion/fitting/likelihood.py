@@ -13,7 +13,7 @@ from scipy.stats import norm
 
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.fitting.data import Data, Run
-from fem_adhesion.fitting.model import Apparatus, Branches, Other, Theory, by_jkr, recorded
+from fem_adhesion.fitting.model import Apparatus, Branches, Theory, by_jkr, recorded
 from halfspace.values import Array
 
 LEVEL = 0.95  # of all intervals
@@ -41,7 +41,6 @@ class Problem:
     """
 
     theory: Theory
-    other: Other
     data: Data
     start: Apparatus
     fitted: tuple[str, ...]
@@ -54,14 +53,14 @@ class Problem:
     def at(self, log_tabor: float, x: Array) -> Problem:
         """The problem at another Tabor parameter, its curve that of the sizes at coordinates."""
         moved = replace(self, log_tabor=log_tabor)
-        return replace(moved, curve=self.theory(self.other.units(moved.apparatus(x))))
+        return replace(moved, curve=self.theory(moved.apparatus(x).units))
 
     def apparatus(self, x: Array) -> Apparatus:
         """Apparatus at the fitter's coordinates: logarithms, and lengths in those of the start."""
         moved = replace(
             self.start, **{name: self.value(name, float(at)) for name, at in zip(self.fitted, x, strict=True)}
         )
-        return replace(moved, spacing=self.other.units(moved).displacement / math.exp(self.log_tabor))
+        return replace(moved, spacing=moved.units.displacement / math.exp(self.log_tabor))
 
     def value(self, name: str, x: float) -> float:
         """Value at a coordinate."""
@@ -92,11 +91,21 @@ class Problem:
     @cached_property
     def _units(self) -> Mapping[str, float]:
         """Units of the coordinates that are no logarithms."""
-        return {"contact_point": self.other.units(self.start).displacement, "compliance": 1 / self.start.stiffness}
+        return {"contact_point": self.start.units.displacement, "compliance": 1 / self.start.stiffness}
+
+    def first(self) -> Array:
+        """Coordinates of the contact point that the jumps or, without any, the force says; all others as given."""
+        x, contact = np.zeros(len(self.fitted)), self.start.contact_point
+        found = self.branches(self.apparatus(x))
+        base, force = found.contact[:, np.argmin(found.contact[1]) :]
+        shifts = [at.travel - found.place(at.segment) for at in self.data.places]
+        shift = float(np.mean(shifts or contact - np.interp(0.0, force, base)))
+        x[1] = self.coordinate("contact_point", contact + shift)
+        return x
 
     def branches(self, apparatus: Apparatus) -> Branches:
         """Branches as they are recorded."""
-        return recorded(self.curve, apparatus, self.other.units(apparatus), self.recorded_stiffness)
+        return recorded(self.curve, apparatus, self.recorded_stiffness)
 
     def residuals(self, x: Array) -> Array:
         """Whitened residuals of the samples, then those of the jumps' places and of what was known before."""
@@ -109,7 +118,7 @@ class Problem:
 
     def _wall(self, apparatus: Apparatus) -> float:
         """Residual that keeps the pull-off near the data's: a contact point far off makes a minimum without one."""
-        force = MEAN_PULL_OFF * self.other.units(apparatus).load / apparatus.sensitivity
+        force = MEAN_PULL_OFF * apparatus.units.load / apparatus.sensitivity
         return WALL * max(abs(math.log(force / self.pull_off)) - math.log(FAR_OFF), 0.0)
 
     def jacobian(self, x: Array) -> Array:

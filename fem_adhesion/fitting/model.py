@@ -8,7 +8,7 @@ branch down to the last turn and tears off. What lies between is unstable: no ap
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -138,6 +138,10 @@ class Apparatus:
         True deflection over the recorded one.
     compliance : float
         Of what else yields in series with the spring, in m/N.
+    poisson : float
+        Poisson's ratio of the sphere.
+    counter_modulus, counter_poisson, counter_radius : float
+        Of the other body, which is rigid and flat unless given.
     """
 
     radius: float
@@ -148,30 +152,25 @@ class Apparatus:
     stiffness: float
     sensitivity: float = 1.0
     compliance: float = 0.0
-
-
-@dataclass(frozen=True)
-class Other:
-    """What is not fitted: Poisson's ratio, and the other body, rigid and flat unless given."""
-
-    poisson: float
+    poisson: float = field(kw_only=True)
     counter_modulus: float = np.inf
     counter_poisson: float = 0.0
     counter_radius: float = np.inf
 
-    def units(self, apparatus: Apparatus) -> Units:
+    @property
+    def units(self) -> Units:
         """Units of the contact."""
-        modulus = contact_modulus(apparatus.modulus, self.poisson, self.counter_modulus, self.counter_poisson)
-        radius = equivalent_radius(apparatus.radius, self.counter_radius)
-        return Units(radius, modulus, apparatus.work_of_adhesion, apparatus.spacing)
+        modulus = contact_modulus(self.modulus, self.poisson, self.counter_modulus, self.counter_poisson)
+        radius = equivalent_radius(self.radius, self.counter_radius)
+        return Units(radius, modulus, self.work_of_adhesion, self.spacing)
 
 
-def recorded(curve: Array, apparatus: Apparatus, units: Units, nominal: float | None = None) -> Branches:
+def recorded(curve: Array, apparatus: Apparatus, nominal: float | None = None) -> Branches:
     """Branches of a theory's curve as an apparatus records it: travels in m, forces in N, without offset and drift.
 
     A force that was computed from a deflection by a nominal stiffness is wrong as that is.
     """
-    compliance = 1 / apparatus.stiffness + apparatus.compliance
+    units, compliance = apparatus.units, 1 / apparatus.stiffness + apparatus.compliance
     found = branches(curve, 1 / (compliance * units.stiffness))
     force = units.load / apparatus.sensitivity * (nominal / apparatus.stiffness if nominal else 1.0)
     scale, origin = np.array([[units.spacing], [force]]), np.array([[apparatus.contact_point], [0.0]])

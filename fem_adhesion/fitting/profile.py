@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -98,17 +98,12 @@ class Profile:
         return np.array([works, np.exp(np.append(small, large[::-1]))])
 
 
-def profiled(
-    problem: Problem, tabors: Sequence[float], limits: tuple[float, float], first: Callable[[Problem], Array]
-) -> Profile:
-    """Profile that starts from some Tabor parameters, and goes on within limits until the least is between two.
-
-    `first` gives coordinates to begin with.
-    """
+def profiled(problem: Problem, tabors: Sequence[float], limits: tuple[float, float]) -> Profile:
+    """Profile that starts from some Tabor parameters, and goes on within limits until the least is between two."""
     fits = dict[float, Best]()
     for at in (round(math.log(tabor), 9) for tabor in tabors):
         here = problem.at(at, np.zeros(len(problem.fitted)))
-        fits[at] = here.settled(first(here), loose=True)
+        fits[at] = here.settled(here.first(), loose=True)
     if problem.theory is by_atlas and min(fits.values(), key=lambda one: one.chi2).scale > NEARLY:
         _exchange(problem, fits)
     least, most = (round(math.log(limit), 9) for limit in limits)

@@ -17,7 +17,7 @@ from fem_adhesion.common.scene_options import ATOM
 from fem_adhesion.fitting.data import ORDER, Data, Place, Run
 from fem_adhesion.fitting.likelihood import MEAN_PULL_OFF, NORMAL, SCALES, Best, Problem
 from fem_adhesion.fitting.measured import APPROACH, BASE, ForceCurve, read
-from fem_adhesion.fitting.model import SOFTEST, STIFFEST, THEORIES, Apparatus, Other, Theory, by_atlas, by_jkr
+from fem_adhesion.fitting.model import SOFTEST, STIFFEST, THEORIES, Apparatus, Theory, by_atlas, by_jkr
 from fem_adhesion.fitting.prepare import Prepared, prepare
 from fem_adhesion.fitting.profile import Profile, profiled
 from fem_adhesion.fitting.traced import Traced
@@ -200,32 +200,28 @@ def fit(
     if (counter_modulus is None) != (counter_poisson is None):
         raise InputError("counter_modulus without counter_poisson, limit: both or none; give the other too")
     counter = {"counter_modulus": counter_modulus, "counter_poisson": counter_poisson, "counter_radius": counter_radius}
-    other = Other(require_poisson(poisson), **{name: value for name, value in counter.items() if value is not None})
+    still = {"poisson": require_poisson(poisson)} | {name: one for name, one in counter.items() if one is not None}
     for name in models:
         if name not in THEORIES:
-            Traced(name, other.poisson).require(given["radius"].value, counter=counter_modulus or counter_radius)
+            Traced(name, poisson).require(given["radius"].value, counter=counter_modulus or counter_radius)
     prepared = prepare(curve)
     loads = 2 * MEAN_PULL_OFF * float(np.max(curve.force - prepared.background)) / prepared.pull_off
     named_models = {
-        name: THEORIES.get(name) or Traced(name, other.poisson, max(loads, COMPRESSION)) for name in (ATLAS, *models)
+        name: THEORIES.get(name) or Traced(name, poisson, max(loads, COMPRESSION)) for name in (ATLAS, *models)
     }
-    found, unsolved = _profiles(named_models, prepared, given, other, in_turn(progress, len(named_models)))
+    found, unsolved = _profiles(_problem(prepared, given, still), named_models, in_turn(progress, len(named_models)))
     atlas = found[ATLAS]
     return Fit(prepared, values_of(atlas), atlas, _candidates(found), _branches(atlas.best), unsolved)
 
 
 def _profiles(
-    theories: Mapping[str, Theory],
-    prepared: Prepared,
-    given: Mapping[str, Measured],
-    other: Other,
-    begin: Callable[[str], None],
+    problem: Problem, theories: Mapping[str, Theory], begin: Callable[[str], None]
 ) -> tuple[dict[str, Profile], dict[str, str]]:
     """Profiles of the models, that of the atlas first, and why others have none."""
     found, unsolved = dict[str, Profile](), dict[str, str]()
     for name, theory in theories.items():
         begin(name)
-        profile = tried(profile_of, theory, *_starts(theory, found), prepared, given, other, refusals=True)
+        profile = tried(profile_of, replace(problem, theory=theory), *_starts(theory, found), refusals=True)
         if not isinstance(profile, Unsolved):
             found[name] = profile
         elif theory is by_atlas:
@@ -270,55 +266,38 @@ def data_of(prepared: Prepared, stiffness: float) -> Data:
     return Data(travel, curve.force, tuple(runs), tuple(places), noise, prepared.correlation, *forms)
 
 
-def profile_of(
-    theory: Theory,
-    tabors: Sequence[float],
-    limits: tuple[float, float],
-    prepared: Prepared,
-    given: Mapping[str, Measured],
-    other: Other,
-    held: Sequence[str] = (),
-) -> Profile:
-    """Profile of a model, started from Tabor parameters.
-
-    Quantities that stray from what is known are held there: thousands of residuals of a wrong model outweigh it.
-    """
-    prior = {key: each for key, each in given.items() if 0 < each.deviation < math.inf}
-    moved = [key for key, each in given.items() if each.deviation > 0 and key not in held]
-    start = {key: each.value for key, each in given.items()}
+def _problem(prepared: Prepared, given: Mapping[str, Measured], still: Mapping[str, float]) -> Problem:
+    """Likelihood by the atlas, from which others differ by the theory; `still` is what is known of the bodies."""
+    start = {name: each.value for name, each in given.items()}
     if math.isinf(given["modulus"].deviation):
-        start["modulus"] = _hertz(prepared, start, other)
+        start["modulus"] = _hertz(prepared, start, still["poisson"])
     work = prepared.pull_off * start["sensitivity"] / (MEAN_PULL_OFF * start["radius"])
-    problem = Problem(
-        theory,
-        other,
+    return Problem(
+        by_atlas,
         data_of(prepared, given["stiffness"].value),
-        Apparatus(**start, work_of_adhesion=work, spacing=1.0, contact_point=prepared.contact),
-        ("work_of_adhesion", "contact_point", *moved),
-        prior,
+        Apparatus(**start, **still, work_of_adhesion=work, spacing=1.0, contact_point=prepared.contact),
+        ("work_of_adhesion", "contact_point", *(name for name, each in given.items() if each.deviation > 0)),
+        {name: each for name, each in given.items() if 0 < each.deviation < math.inf},
         prepared.pull_off,
         given["stiffness"].value if prepared.curve.deflection_given else None,
     )
 
-    def first(problem: Problem) -> Array:
-        """Coordinates of the contact point that the jumps or, without any, the force says; all others as given."""
-        x = np.zeros(len(problem.fitted))
-        found = problem.branches(problem.apparatus(x))
-        base, force = found.contact[:, np.argmin(found.contact[1]) :]
-        shifts = [at.travel - found.place(at.segment) for at in problem.data.places]
-        shift = float(np.mean(shifts or prepared.contact - np.interp(0.0, force, base)))
-        x[1] = problem.coordinate("contact_point", prepared.contact + shift)
-        return x
 
-    found = profiled(problem, tabors, limits, first)
-    known = [key for key in prior if key in SCALES and key not in held]
-    strayed = [key for key in known if abs(problem.departure(key, getattr(found.best.apparatus, key))) > STRAYED]
-    if strayed:
-        return profile_of(theory, tabors, limits, prepared, given, other, (*held, *strayed))
-    return found
+def profile_of(problem: Problem, tabors: Sequence[float], limits: tuple[float, float]) -> Profile:
+    """Profile of a model, started from Tabor parameters.
+
+    Quantities that stray from what is known are held there: thousands of residuals of a wrong model outweigh it.
+    """
+    found = profiled(problem, tabors, limits)
+    known = problem.prior.keys() & {*SCALES} & {*problem.fitted}
+    strayed = {name for name in known if abs(problem.departure(name, getattr(found.best.apparatus, name))) > STRAYED}
+    if not strayed:
+        return found
+    kept = tuple(name for name in problem.fitted if name not in strayed)
+    return profile_of(replace(problem, fitted=kept), tabors, limits)
 
 
-def _hertz(prepared: Prepared, start: Mapping[str, float], other: Other) -> float:
+def _hertz(prepared: Prepared, start: Mapping[str, float], poisson: float) -> float:
     """Modulus by Hertz's indentation at the largest force; that of the start if the spring takes all of the travel."""
     curve = prepared.curve
     force = float(np.max((curve.force - prepared.background)[curve.approach])) * start["sensitivity"]
@@ -326,7 +305,7 @@ def _hertz(prepared: Prepared, start: Mapping[str, float], other: Other) -> floa
     depth = float(curve.travel.max()) - prepared.contact - bent
     if depth <= 0:
         return start["modulus"]
-    return 0.75 * force / math.sqrt(start["radius"] * depth**3) * (1 - other.poisson**2)
+    return 0.75 * force / math.sqrt(start["radius"] * depth**3) * (1 - poisson**2)
 
 
 def values_of(profile: Profile) -> dict[str, Value]:

@@ -31,14 +31,14 @@ def report(fit: Fit) -> RenderableType:
 
 
 def _values(fit: Fit) -> Fitted:
-    values, units = fit.values, fit.best.problem.other.units(fit.best.apparatus)
+    values = fit.values
     columns = [
         Column("quantity", [name.replace("_", " ") for name in values], words=True),
         Column("value", [words.sized(value.value, value.unit) for value in values.values()]),
         Column("95 %", [words.interval(value) for value in values.values()]),
         Column("note", ["" if value.identified else "not identified" for value in values.values()], words=True),
     ]
-    return Fitted(columns, [f"fit of the atlas: tabor = {units.tabor:.3g}"])
+    return Fitted(columns, [f"fit of the atlas: tabor = {fit.best.apparatus.units.tabor:.3g}"])
 
 
 def _branches(fit: Fit) -> Fitted:

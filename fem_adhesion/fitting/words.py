@@ -114,11 +114,10 @@ def _models(fit: Fit) -> Iterator[str]:
 
 def _sphere(fit: Fit) -> Iterator[str]:
     """What dgamma would be of a finite sphere, which no residual shows either, where that is outside the interval."""
-    other, value = fit.best.problem.other, fit.values["work_of_adhesion"]
-    units = other.units(fit.best.apparatus)
+    units, value = fit.best.apparatus.units, fit.values["work_of_adhesion"]
     tabor = float(np.clip(units.tabor, *sphere.TABORS))
     ratio = float(np.clip(units.radius / units.spacing, max(sphere.RATIOS[0], SMALLEST * tabor), sphere.RATIOS[-1]))
-    share = float(sphere.pull_off(tabor, ratio, min(other.poisson, sphere.POISSON[1])).load_ratio)
+    share = float(sphere.pull_off(tabor, ratio, min(fit.best.apparatus.poisson, sphere.POISSON[1])).load_ratio)
     if not (value.low or 0.0) <= value.value / share <= (value.high or math.inf):
         yield (
             f"A whole sphere of R/eps = {units.radius / units.spacing:.3g} pulls off at {share:.3g} of the force of a "

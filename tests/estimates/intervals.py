@@ -13,7 +13,7 @@ import numpy as np
 from synthetic_curves import synthetic
 
 from fem_adhesion.common.numbers import Measured
-from fem_adhesion.fitting.model import Apparatus, Other
+from fem_adhesion.fitting.model import Apparatus
 from fem_adhesion.fitting.study import fit
 
 RADIUS, WORK, SPACING, POISSON = 50e-9, 0.05, 0.3e-9, 0.3
@@ -28,10 +28,11 @@ def one(seed):
     modulus = math.sqrt(RADIUS * WORK**2 / (tabor * SPACING) ** 3) * (1 - POISSON**2)
     size = 2 * np.pi * RADIUS * WORK
     sensitivity = rng.uniform(0.8, 1.2)
-    truth = Apparatus(RADIUS, modulus, WORK, SPACING, 2e-7, stiffness * RADIUS * WORK / SPACING, sensitivity)
+    spring = stiffness * RADIUS * WORK / SPACING
+    truth = Apparatus(RADIUS, modulus, WORK, SPACING, 2e-7, spring, sensitivity, poisson=POISSON)
     offset, drift = 0.05 * size * rng.normal(size=2)
     noise = NOISES[seed % len(NOISES)] * size
-    curve = synthetic(truth, Other(POISSON), rng, noise=noise, correlation=0.3, offset=offset, drift=drift)
+    curve = synthetic(truth, rng, noise=noise, correlation=0.3, offset=offset, drift=drift)
     given = {"radius": RADIUS, "modulus": modulus, "poisson": POISSON, "stiffness": truth.stiffness}
     begin = time.process_time()
     found = fit(curve, **given, sensitivity=Measured(1.0, math.inf), models=())

@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from fem_adhesion.fitting.measured import ForceCurve
-from fem_adhesion.fitting.model import Apparatus, Other, Theory, by_atlas, recorded
+from fem_adhesion.fitting.model import Apparatus, Theory, by_atlas, recorded
 
 
 def synthetic(
     truth: Apparatus,
-    other: Other,
     rng: np.random.Generator,
     *,
     noise: float,
@@ -25,8 +24,7 @@ def synthetic(
     theory: Theory = by_atlas,
 ) -> ForceCurve:
     """`noise` and `offset` in N, `drift` in N per segment, `pressed` in pull-off forces, `baseline` of the travel."""
-    units = other.units(truth)
-    found = recorded(theory(units), truth, units)
+    found = recorded(theory(truth.units), truth)
     base, force = found.contact
     pull_off = -force.min()
     last = np.interp(pressed * pull_off, force[np.argmin(force) :], base[np.argmin(force) :])

@@ -13,7 +13,7 @@ from whole_runs import COMPARE, GREENWOOD, ROOT
 
 from fem_adhesion import cli
 from fem_adhesion.common.record import SCHEMA, read
-from fem_adhesion.fitting.model import Apparatus, Other
+from fem_adhesion.fitting.model import Apparatus
 from halfspace import atlas
 
 SECTIONS = dict(
@@ -110,9 +110,9 @@ def require_record(folder, *lines):
 
 def written(folder):
     """What the lines need: two force curves, and a table for the benchmark."""
-    truth = Apparatus(50e-9, 5e9, 0.05, 0.3e-9, 0.0, 2.0)
+    truth = Apparatus(50e-9, 5e9, 0.05, 0.3e-9, 0.0, 2.0, poisson=0.3)
     for seed, name in enumerate(("one.csv", "two.csv")):
-        curve = synthetic(truth, Other(0.3), np.random.default_rng(seed), noise=5e-11, count=200)
+        curve = synthetic(truth, np.random.default_rng(seed), noise=5e-11, count=200)
         write(folder / name, curve)
     load = float(atlas.pull_off(1.0).load)
     (folder / "their.csv").write_text(f"problem,quantity,value\nhalf-space-1,pull_off_load,{load:.6f}\n")

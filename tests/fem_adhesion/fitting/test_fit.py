@@ -16,7 +16,7 @@ import halfspace
 from fem_adhesion import cli
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.fitting import words
-from fem_adhesion.fitting.model import Apparatus, Other, by_atlas, by_jkr, recorded
+from fem_adhesion.fitting.model import Apparatus, by_atlas, by_jkr, recorded
 from halfspace import Layer
 from halfspace.atlas import curve
 from halfspace.laws.formulas import Morse
@@ -29,7 +29,8 @@ FREE = Measured(1.0, math.inf)
 def _truth(tabor, spacing, stiffness, **more):
     """Apparatus of a Tabor parameter on a spring of a stiffness in R dgamma/eps."""
     modulus = math.sqrt(RADIUS * WORK**2 / (tabor * spacing) ** 3) * (1 - POISSON**2)
-    return Apparatus(RADIUS, modulus, WORK, spacing, 2e-7, stiffness * RADIUS * WORK / spacing, **more)
+    spring = stiffness * RADIUS * WORK / spacing
+    return Apparatus(RADIUS, modulus, WORK, spacing, 2e-7, spring, poisson=POISSON, **more)
 
 
 def _fit(truth, noise, seed=2, theory=by_atlas, models=(), count=250, **more):
@@ -37,7 +38,7 @@ def _fit(truth, noise, seed=2, theory=by_atlas, models=(), count=250, **more):
     size = 2 * np.pi * RADIUS * WORK
     rng = np.random.default_rng(seed)
     made = {"noise": noise * size, "correlation": 0.3, "offset": 0.1 * size, "drift": 0.05 * size, "count": count}
-    data = synthetic(truth, Other(POISSON), rng, **made, theory=theory)
+    data = synthetic(truth, rng, **made, theory=theory)
     given = {"radius": RADIUS, "modulus": truth.modulus, "poisson": POISSON, "stiffness": truth.stiffness}
     return fem_adhesion.fit(data, **given | {"sensitivity": FREE} | more, models=models)
 
@@ -49,8 +50,8 @@ def _holds(value, truth):
 @pytest.mark.parametrize(("tabor", "stiffness"), [(0.1, 3.0), (1.0, 0.05), (5.0, 0.5)])
 def test_the_apparatus_records_the_states_of_the_atlas(tabor, stiffness):
     truth = _truth(tabor, 0.3e-9, stiffness, sensitivity=1.1)
-    units = Other(POISSON).units(truth)
-    found = recorded(by_atlas(units), truth, units)
+    units = truth.units
+    found = recorded(by_atlas(units), truth)
     for name, branch in (("separated", found.separated), ("contact", found.contact)):
         turn = found.on if name == "separated" else found.off
         ends = curve(tabor).branches("base", stiffness=stiffness).get(name, (-10.0, 10.0))
@@ -201,7 +202,7 @@ def test_what_is_known_before_narrows_what_is_free():
 def test_the_command_writes_what_it_found(tmp_path, capsys):
     truth = _truth(1.0, 0.3e-9, 0.2)
     file, out, plot = tmp_path / "curve.csv", tmp_path / "out.json", tmp_path / "fit.png"
-    write(file, synthetic(truth, Other(POISSON), np.random.default_rng(3), noise=1e-10, count=200))
+    write(file, synthetic(truth, np.random.default_rng(3), noise=1e-10, count=200))
     given = f"--radius 50nm --modulus {truth.modulus}Pa --poisson 0.3 --stiffness {truth.stiffness}N/m".split()
     assert cli.main(["fit", str(file), *given, "--models", "jkr", "--json", str(out), "--plot", str(plot)]) == 0
     record = json.loads(out.read_text())

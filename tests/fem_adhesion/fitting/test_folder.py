@@ -14,7 +14,7 @@ from fem_adhesion import cli
 from fem_adhesion.common.files import open_store
 from fem_adhesion.common.numbers import engineering
 from fem_adhesion.fitting.folder import Source, code, outcome, run, sources, spreads, told, write_csv
-from fem_adhesion.fitting.model import Apparatus, Other
+from fem_adhesion.fitting.model import Apparatus
 from fem_adhesion.report.page import fit_section
 from halfspace.errors import InputError
 
@@ -101,14 +101,14 @@ def test_the_table_leaves_open_ends_and_refused_curves_empty():
 
 
 CONTACT = ["--radius", "50nm", "--modulus", "10GPa", "--poisson", "0.3", "--stiffness", "5N/m"]
-TRUTH = Apparatus(50e-9, 10e9, 0.05, 0.3e-9, 2e-7, 5.0)
+TRUTH = Apparatus(50e-9, 10e9, 0.05, 0.3e-9, 2e-7, 5.0, poisson=0.3)
 
 
 def test_the_command_fits_what_it_can_of_a_folder(curves, tmp_path, capsys):
     table, record, kept = (tmp_path / name for name in ("fits.csv", "fits.json", "kept"))
     (curves / "spectroscopy_two.nid").unlink()
     made = {"noise": 5e-11, "correlation": 0.3, "offset": 1e-9, "count": 80}
-    write(curves / "second.csv", synthetic(TRUTH, Other(0.3), np.random.default_rng(1), **made))
+    write(curves / "second.csv", synthetic(TRUTH, np.random.default_rng(1), **made))
     names = ["--csv", str(table), "--json", str(record), "--plot", str(tmp_path / "fits.svg"), "--resume", str(kept)]
     asked = ["fit", str(curves), *CONTACT, "--models", "jkr", "--jobs", "1", *names]
     assert cli.main(asked) == 1

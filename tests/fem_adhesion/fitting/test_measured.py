@@ -5,14 +5,14 @@ import pytest
 from synthetic_curves import synthetic
 
 from fem_adhesion.fitting.measured import read
-from fem_adhesion.fitting.model import Apparatus, Other
+from fem_adhesion.fitting.model import Apparatus
 from fem_adhesion.fitting.prepare import prepare
 from halfspace import atlas
 from halfspace.errors import InputError
 
 STIFFNESS = 10.0  # N/m
-TRUTH = Apparatus(100e-9, 10e9, 0.05, 0.3e-9, contact_point=0.0, stiffness=STIFFNESS)
-UNITS = Other(poisson=0.0).units(TRUTH)
+TRUTH = Apparatus(100e-9, 10e9, 0.05, 0.3e-9, contact_point=0.0, stiffness=STIFFNESS, poisson=0.0)
+UNITS = TRUTH.units
 FORCE = UNITS.load
 NOISE, CORRELATION = 2e-3 * FORCE, 0.6
 OFFSET, SLOPE = 3 * FORCE, 0.002 * FORCE / UNITS.spacing  # of the baseline, which the retract has a tenth higher
@@ -21,7 +21,7 @@ OFFSET, SLOPE = 3 * FORCE, 0.002 * FORCE / UNITS.spacing  # of the baseline, whi
 def _made(baseline=0.92, count=1000, seed=5):
     """Travel in m and force in N of an approach and of its retract."""
     made = {"noise": NOISE, "correlation": CORRELATION, "count": count, "baseline": baseline, "pressed": 2.0}
-    curve = synthetic(TRUTH, Other(poisson=0.0), np.random.default_rng(seed), **made)
+    curve = synthetic(TRUTH, np.random.default_rng(seed), **made)
     return curve.travel, curve.force + np.repeat([1.0, 1.1], count) * OFFSET + SLOPE * curve.travel
 
 
