@@ -203,13 +203,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     digest = code_digest("fem_adhesion.convergence")
     directory = given.nodes / digest
     directory.mkdir(parents=True, exist_ok=True)
-    node: build.Store[Point, Estimate] = build.Store(
-        directory / "sphere.jsonl",
-        solved,
-        lambda pair: Estimate(*pair),
-        lambda told: print(f"\r{told}   ", end=""),
-        tuple,
-    )
+    node = build.Store(directory / "sphere.jsonl", solved, lambda pair: Estimate(*pair))
     if given.check:
         return _report(_deviations(node, given.check, given.seed))
     content = built(node, digest)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Sequence
+from functools import partial
 from operator import itemgetter
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from halfspace.atlas import build, build_curves
 from halfspace.atlas.curves import curve
 from halfspace.atlas.events import birth_of_folds
 from halfspace.atlas.series import series_of, stored
-from halfspace.values import Array
+from halfspace.values import Array, Estimate
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -28,12 +29,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     digest = build.digest()
     directory = given.nodes / digest
     directory.mkdir(parents=True, exist_ok=True)
-    node = build.events_solved(directory, _told)
+    node = build.Store(directory / "events.jsonl", build.solved, lambda pair: Estimate(*pair))
     if given.check:
         return _check(node, build.sample(given.check, given.seed, birth_of_folds().value))
     content = build.built(node, digest)
     gap = series_of(content["series"]["zero_load.central_gap"])
-    curves = build_curves.built(build_curves.states_solved(directory, gap, _told))
+    states = build.Store(directory / "curves.jsonl", partial(build_curves.states, gap=gap), np.array)
+    curves = build_curves.built(states)
     text = json.dumps(content, separators=(",", ":")).replace('],"', '],\n"')
     (given.out / "atlas.json").write_text(text + "\n", encoding="utf-8")
     np.savez_compressed(given.out / "curves.npz", allow_pickle=False, **curves)
@@ -41,10 +43,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"\n{given.out / name}: {(given.out / name).stat().st_size / 1000:.0f} kB", end="")
     print()
     return 0
-
-
-def _told(progress: str) -> None:
-    print(f"\r{progress}   ", end="", flush=True)
 
 
 def _check(node: build.Node, tabors: Array) -> int:

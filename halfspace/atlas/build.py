@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from itertools import pairwise
@@ -66,20 +67,15 @@ def solved(tabor: float) -> dict[str, Estimate]:
 class Store(Generic[Key, T]):
     """What was solved for at some Tabor parameters, one line each in a file, so that an interrupted build goes on.
 
-    `solve` gives what is stored by name; `read` makes it of the numbers in the file, and `key` what it is stored by.
+    `solve` gives what is stored by name; `read` makes it of the numbers in the file. Progress is shown.
     """
 
-    def __init__(
-        self,
-        file: Path,
-        solve: Callable[[Key], dict[str, T]],
-        read: Callable[[Any], T],
-        told: Callable[[str], None],
-        key: Callable[[Any], Key],
-    ) -> None:
-        self.file, self.solve, self.told = file, solve, told
-        lines = map(json.loads, file.read_text().splitlines() if file.exists() else ())
-        self.known = {key(at): {name: read(numbers) for name, numbers in found.items()} for at, found in lines}
+    def __init__(self, file: Path, solve: Callable[[Key], dict[str, T]], read: Callable[[Any], T]) -> None:
+        self.file, self.solve, self.known = file, solve, dict[Key, dict[str, T]]()
+        for line in file.read_text().splitlines() if file.exists() else ():
+            at, found = json.loads(line)
+            key: Any = tuple(at) if isinstance(at, list) else at
+            self.known[key] = {name: read(numbers) for name, numbers in found.items()}
 
     def __call__(self, key: Key) -> dict[str, T]:
         """What there is at a Tabor parameter, solved for unless it is known."""
@@ -87,18 +83,15 @@ class Store(Generic[Key, T]):
             self.known[key] = self.solve(key)
             with self.file.open("a") as lines:
                 lines.write(json.dumps([key, self.known[key]], default=_plain) + "\n")
-            self.told(f"{self.file.stem}: {len(self.known)}, the last at tabor {np.ravel(np.array(key))[0]:.4g}")
+            last = np.ravel(np.array(key))[0]
+            sys.stdout.write(f"\r{self.file.stem}: {len(self.known)}, the last at tabor {last:.4g}   ")
+            sys.stdout.flush()
         return self.known[key]
 
 
 def _plain(value: Any) -> Any:
     """Numbers of an estimate or an array."""
     return value.tolist() if isinstance(value, np.ndarray) else [value.value, value.error]
-
-
-def events_solved(directory: Path, told: Callable[[str], None]) -> Store[float, Estimate]:
-    """Store of the events of Tabor parameters."""
-    return Store(directory / "events.jsonl", solved, lambda pair: Estimate(*pair), told, float)
 
 
 def digest() -> str:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from halfspace.accuracy.trace import trace
-from halfspace.atlas.build import EVENTS, RTOL, WHOLE, Store, fitted
+from halfspace.atlas.build import EVENTS, RTOL, WHOLE, fitted
 from halfspace.atlas.curves import PARTS, Curve, layout
 from halfspace.atlas.series import Series
 from halfspace.equilibrium.events import usual
@@ -31,13 +30,10 @@ STEPS = 2.0**38  # units in the largest coefficient of a piece, which are stored
 States = Mapping[str, Array]
 
 
-def states_solved(directory: Path, gap: Series, told: Callable[[str], None]) -> Store[float, Array]:
-    """Store of states of curves, by the central gap under no load as it is in the atlas."""
-    return Store(directory / "curves.jsonl", lambda tabor: states(tabor, gap), np.array, told, float)
-
-
 def states(tabor: float, gap: Series) -> dict[str, Array]:
-    """Numbers (3, pieces, nodes) of a curve: approach + central gap, load and the square of the contact radius.
+    """Numbers (3, pieces, nodes) of a curve, by the central gap under no load as it is in the atlas.
+
+    They are approach + central gap, load and the square of the contact radius.
 
     Their errors, (4,), the third that of the central gap, are those of the least known event: those of a state with a
     given central gap are larger, but along the curve.

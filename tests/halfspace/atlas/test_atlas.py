@@ -221,18 +221,19 @@ def test_the_files_are_small_and_packed():
 # --- how it is made ---
 
 
-def test_a_build_goes_on_from_the_nodes_that_are_solved(tmp_path):
-    solved, told = [], []
+def test_a_build_goes_on_from_the_nodes_that_are_solved(tmp_path, capsys):
+    solved = []
 
-    def solve(tabor):
-        solved.append(tabor)
-        return {"load": Estimate(tabor, 0.5)}
+    def solve(at):
+        solved.append(at)
+        return {"load": Estimate(len(solved), 0.5)}
 
     for _ in range(2):
-        node = build.Store(tmp_path / "nodes.jsonl", solve, lambda pair: Estimate(*pair), told.append, float)
-        assert [node(tabor)["load"] for tabor in (0.1, 0.2, 0.1)] == [Estimate(one, 0.5) for one in (0.1, 0.2, 0.1)]
-    assert solved == [0.1, 0.2]
-    assert told == ["nodes: 1, the last at tabor 0.1", "nodes: 2, the last at tabor 0.2"]
+        node = build.Store(tmp_path / "nodes.jsonl", solve, lambda pair: Estimate(*pair))
+        assert [node(at)["load"] for at in (0.1, (0.2, 5.0), 0.1)] == [Estimate(one, 0.5) for one in (1, 2, 1)]
+    assert solved == [0.1, (0.2, 5.0)]
+    told = capsys.readouterr().out.split("\r")
+    assert [one.strip() for one in told] == ["", "nodes: 1, the last at tabor 0.1", "nodes: 2, the last at tabor 0.2"]
 
 
 def test_a_series_through_a_known_number_is_that_number():
