@@ -84,7 +84,7 @@ def deviations(tabor: float, curve: Curve, seed: int = 0) -> tuple[float, float]
     path = trace(tabor, rtol=RTOL, to_load=TO_LOAD)
     relative, of_errors = [0.0], [0.0]
     ours, theirs = curve.branches("approach"), path.branches("approach")
-    for branch in ours.keys() & theirs.keys():
+    for branch in [name for name in ours if name in theirs]:
         low, high = max(ours[branch][0], theirs[branch][0]), min(ours[branch][1], theirs[branch][1])
         approach = low + (high - low) * random.uniform(0.02, 0.98, 4)
         one, other = curve.at(approach=approach, branch=branch), path.at(approach=approach, branch=branch)
