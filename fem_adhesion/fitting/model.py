@@ -43,14 +43,20 @@ def by_atlas(units: Units) -> Array:
     if tabor > MOST:
         return _closed(curves.jkr_with_reach, units)
     curve = atlas.table(tabor, COUNT)
-    (first, pull), (last, push) = curve[:, 0], curve[:, -1]
-    h = (1 - first) * (FARTHEST * (1 + tabor) / (1 - first)) ** EVEN[:0:-1]
+    last, push = curve[:, -1]
     (x, y, z), w = curve[0, -3:], curve[1, -3:]
     slope = (w[2] - w[1]) / (z - y) * (1 + (z - y) / (z - x)) - (w[1] - w[0]) / (y - x) * (z - y) / (z - x)
     a = slope * tabor / 2  # of the Hertz contact that is as stiff, dW/dalpha* = 2 a/mu
     wider = a * (WIDEST / a) ** EVEN[1:]
     alpha, load = last + tabor * (wider**2 - a**2), push + 4 / 3 * (wider**3 - a**3)
-    return np.hstack([[1 - h, pull * ((1 - first) / h) ** 2], curve, [alpha, load]])
+    return attracted(np.hstack([curve, [alpha, load]]), tabor, 2)
+
+
+def attracted(curve: Array, tabor: float, power: float) -> Array:
+    """Curve with the attraction before it, which falls by a power of the gap."""
+    first, pull = curve[:, 0]
+    h = (1 - first) * (FARTHEST * (1 + tabor) / (1 - first)) ** EVEN[:0:-1]
+    return np.hstack([[1 - h, pull * ((1 - first) / h) ** power], curve])
 
 
 def _closed(curve: Callable[[float, curves.Sampling], Array], units: Units) -> Array:

@@ -13,7 +13,7 @@ import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.common.numbers import NUMBER, parse
 from fem_adhesion.common.words import part_in
-from fem_adhesion.fitting.model import BEYOND, FARTHEST, THEORIES
+from fem_adhesion.fitting.model import THEORIES, attracted
 from fem_adhesion.registry import PARTS, class_of
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.charts import COMPRESSION
@@ -29,13 +29,14 @@ SAME = 1e-3  # arclength between states that are one
 PLACES = 1600  # on the spline through the states of a path: loads err by 0.03 R dgamma at most
 
 
-def kind_of(word: str) -> str:
-    """Kind of the part that a word names, or InputError."""
-    kind = next((kind for kind in KINDS if word.partition(":")[0] in PARTS[kind]), None)
+def kind_of(word: str) -> tuple[str, bool]:
+    """Kind of the part that a word names, and whether R/eps is a parameter of it; InputError if it names none."""
+    name = word.partition(":")[0]
+    kind = next((kind for kind in KINDS if name in PARTS[kind]), None)
     if kind is None:
         known = ", ".join(dict.fromkeys([*THEORIES, *(name for kind in KINDS for name in PARTS[kind])]))
         raise InputError(f"model = {word!r}, limit: one of {known}; choose another")
-    return kind
+    return kind, "radius_ratio" in PARTS[kind][name].parameters
 
 
 @dataclass(frozen=True)
@@ -62,8 +63,8 @@ class Traced:
 
         Or for a body, or a sphere, where there is a counter-body: it would have the pair's radius and compliance.
         """
-        kind, name = kind_of(self.word), self.word.partition(":")[0]
-        if counter and (kind == "body" or "radius_ratio" in PARTS[kind][name].parameters):
+        kind, has_size = kind_of(self.word)
+        if counter and (kind == "body" or has_size):
             raise InputError(f"model = {self.word} with a counter-body, limit: laws and other profiles; leave it out")
         moduli = (WORK * math.sqrt(radius / (tabor * SPACING) ** 3) for tabor in (100.0, 1.0, 0.01))
         found = [tried(self.scene, Units(radius, E, WORK, SPACING), refusals=True) for E in moduli]
@@ -73,13 +74,13 @@ class Traced:
 
     def scene(self, units: Units) -> Scene:
         """Scene of a contact; InputError if the part does not go with it."""
-        kind, name = kind_of(self.word), self.word.partition(":")[0]
+        kind, has_size = kind_of(self.word)
         unit = units.spacing if kind == "law" else units.length
 
         def length(what: str, text: str) -> float:
             return float(text) if re.fullmatch(NUMBER, text) else parse(text, what) / unit
 
-        size = {"radius_ratio": units.radius_ratio} if "radius_ratio" in PARTS[kind][name].parameters else {}
+        size = {"radius_ratio": units.radius_ratio} if has_size else {}
         material = {"material": class_of("material", "linear-elastic")(self.poisson)} if kind == "body" else {}
         part = part_in(kind, self.word, length, size, poisson=self.poisson, **material)
         return Scene(units.tabor, **{kind: part})
@@ -99,8 +100,6 @@ class Traced:
         states = CubicHermiteSpline(along[apart], values.T, rates)
         curve = states(np.linspace(along[0], along[-1], PLACES)).T
         first, pull = curve[:, 0]
-        h = (1 - first) * (FARTHEST * (1 + units.tabor) / (1 - first)) ** np.linspace(1.0, 0.0, BEYOND)[:-1]
         # The power by which the load falls with the gap; none of a law that does not reach so far.
         falling = (1 - first) / pull * rates[0, 1] / rates[0, 0] if pull else 0.0
-        tail = pull * ((1 - first) / h) ** falling
-        return np.hstack([[1 - h, tail], curve])
+        return attracted(curve, units.tabor, falling)

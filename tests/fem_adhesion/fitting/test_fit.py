@@ -16,7 +16,7 @@ import halfspace
 from fem_adhesion import cli
 from fem_adhesion.common.numbers import Measured
 from fem_adhesion.fitting import words
-from fem_adhesion.fitting.model import Apparatus, by_atlas, by_jkr, recorded
+from fem_adhesion.fitting.model import Apparatus, attracted, by_atlas, by_jkr, recorded
 from halfspace import Layer
 from halfspace.atlas import curve
 from halfspace.laws.formulas import Morse
@@ -152,10 +152,7 @@ def test_intervals_are_those_of_minos():
 def _by_trace(**parts):
     """Theory of a contact of tabor 1 that the solver knows and no table."""
     path = halfspace.trace(1.0, rtol=1e-4, to_load=7.0, **parts).resampled(600)
-    nearest = 1 - path.approach[0]
-    gaps = nearest * np.geomspace(1e6, 1, 200)[:-1]
-    attracted = [1 - gaps, path.load[0] * (nearest / gaps) ** 2]  # as h^-2 before it
-    return lambda _: np.hstack([attracted, [path.approach, path.load]])
+    return lambda _: attracted(np.array([path.approach, path.load]), 1.0, 2)
 
 
 def test_a_layer_shows_in_the_residuals_on_a_stiff_spring():
