@@ -207,11 +207,9 @@ class Best:
 
     def residuals(self) -> Iterator[tuple[Run, Array]]:
         """Whitened residuals of the samples, run after run."""
-        rest = self.rest
-        for run in self.problem.data.runs:
-            count = self.problem.data.travel[run.samples].size
-            yield run, rest[:count]
-            rest = rest[count:]
+        runs = self.problem.data.runs
+        ends = np.cumsum([self.problem.data.travel[run.samples].size for run in runs])
+        return zip(runs, np.split(self.rest, ends), strict=False)  # the last part is not of samples
 
     @cached_property
     def covariance(self) -> Array:

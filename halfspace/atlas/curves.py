@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.atlas.series import EDGE, Series, require_tabors, series, summed
-from halfspace.branches import ENDS, WHOLE, branch_names, chosen_branch
+from halfspace.branches import branch_names, chosen_branch
 from halfspace.errors import InputError
 from halfspace.limits import require_number, require_numbers, require_one_of
 from halfspace.values import Array, Index, States, Valued
@@ -106,14 +106,11 @@ class Curve(Valued):
         way, wanted = _way(coordinate, stiffness), np.atleast_1d(values)
         parts = self._parts(way)
         ranges = self._ranges(way, parts)
-        allowed = {WHOLE if branch in ENDS and WHOLE in ranges else branch} if branch else ranges.keys()
-        numbers, times = np.empty((8, *wanted.shape)), np.zeros(wanted.shape, dtype=int)
-        for name in allowed & ranges.keys():
-            here = (ranges[name][0] <= wanted) & (wanted <= ranges[name][1])
+        unit, numbers = UNITS[coordinate], np.empty((8, *wanted.shape))
+        chosen = [chosen_branch(ranges, coordinate, unit, value, branch) for value in wanted.ravel().tolist()]
+        for name in {*chosen}:
+            here = np.reshape([one == name for one in chosen], wanted.shape)
             numbers[:, here] = self._met(way, wanted[here], parts[name], ranges[name])
-            times[here] += 1
-        for value in wanted[times != 1][:1].tolist():  # refused
-            chosen_branch(ranges, coordinate, UNITS[coordinate], value, branch)
         if coordinate in OWN:
             numbers[OWN[coordinate]] = 0.0
         return States(*(number.reshape(values.shape)[()] for number in numbers))

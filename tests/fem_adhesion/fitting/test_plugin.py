@@ -19,7 +19,7 @@ CONTACT_POINT, BASELINE = 300e-9, 2e-10
 def module(tmp_path):
     nanite_model = pytest.importorskip("nanite.model", reason="nanite brings scikit-learn, too much for dev")
     path = tmp_path / "adhesion_model.py"
-    plugin.write(path, radius=2e-6, modulus=3e6, poisson=POISSON, work_of_adhesion=0.05, spacing=1e-9)
+    plugin.write(path, radius=2e-6, modulus=3e6, poisson=POISSON)
     yield nanite_model.load_model_from_file(path, register=True)
     sys.modules.pop("adhesion_model")
 
@@ -50,6 +50,7 @@ def indentation(tmp_path):
 def test_nanite_fits_the_work_of_adhesion_of_a_retract(module, indentation):
     params = module.get_parameter_defaults()
     params["contact_point"].set(CONTACT_POINT + 5e-9)
+    params["eps"].set(UNITS.spacing)
     indentation.apply_preprocessing(["compute_tip_position"])
     indentation.fit_model(model_key=module.model_key, params_initial=params, segment=1, weight_cp=0)
     fitted = indentation.fit_properties["params_fitted"]
