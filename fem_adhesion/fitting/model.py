@@ -44,8 +44,7 @@ def by_atlas(units: Units) -> Array:
         return _closed(curves.jkr_with_reach, units)
     curve = atlas.table(tabor, COUNT)
     last, push = curve[:, -1]
-    (x, y, z), w = curve[0, -3:], curve[1, -3:]
-    slope = (w[2] - w[1]) / (z - y) * (1 + (z - y) / (z - x)) - (w[1] - w[0]) / (y - x) * (z - y) / (z - x)
+    slope = np.gradient(curve[1, -3:], curve[0, -3:], edge_order=2)[-1]
     a = slope * tabor / 2  # of the Hertz contact that is as stiff, dW/dalpha* = 2 a/mu
     wider = a * (WIDEST / a) ** EVEN[1:]
     alpha, load = last + tabor * (wider**2 - a**2), push + 4 / 3 * (wider**3 - a**3)

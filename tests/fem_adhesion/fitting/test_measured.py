@@ -29,20 +29,14 @@ TRAVEL, LOADED = _made()
 SEGMENT = np.repeat(["approach", "retract"], TRAVEL.size // 2)
 
 
-def _write(path, columns):
-    lines = zip(*columns.values(), strict=True)
-    path.write_text("\n".join([",".join(columns), *(",".join(map(str, line)) for line in lines)]) + "\n")
-    return path
-
-
 @pytest.fixture
 def written(tmp_path):
-    return lambda **columns: _write(tmp_path / "curve.csv", columns)
+    def write(**columns):
+        path, lines = tmp_path / "curve.csv", [columns, *zip(*columns.values(), strict=True)]
+        path.write_text("\n".join(",".join(map(str, line)) for line in lines))
+        return path
 
-
-@pytest.fixture
-def plain(written):
-    return read(written(piezo_m=TRAVEL, force_N=LOADED, segment=SEGMENT))
+    return write
 
 
 DIALECTS = {
@@ -87,8 +81,9 @@ def test_a_turn_in_tension_is_no_compression(written):
     assert read(written(piezo_m=travel, force_N=force)).force == pytest.approx(force)
 
 
-def test_preparing_finds_what_was_put_in(plain):
-    found, ranges = prepare(plain), atlas.curve(UNITS.tabor).branches("base", stiffness=STIFFNESS / UNITS.stiffness)
+def test_preparing_finds_what_was_put_in(written):
+    found = prepare(read(written(piezo_m=TRAVEL, force_N=LOADED, segment=SEGMENT)))
+    ranges = atlas.curve(UNITS.tabor).branches("base", stiffness=STIFFNESS / UNITS.stiffness)
     step, spacing = np.diff(TRAVEL)[0], UNITS.spacing
     zero = atlas.zero_load(UNITS.tabor).approach
     assert found.contact == pytest.approx(zero * spacing, abs=step)
