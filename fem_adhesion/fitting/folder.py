@@ -78,14 +78,12 @@ def run(
     reading: Mapping[str, float | None],
     asked: Mapping[str, Any],
     store: Store | None = None,
-    *,
-    work: Callable[..., Row] = outcome,
     **how: Any,
 ) -> tuple[Row, ...]:
     """Fit the curves that the store does not hold, and store each at once.
 
-    `reading` are keywords of `read`, `asked` those of `fit`. The work, a function of a module, makes the row of a
-    curve; `how` are further keywords of `fem_adhesion.common.jobs.solve_all`: jobs, dask, progress.
+    `reading` are keywords of `read`, `asked` those of `fit`; `how` are further keywords of
+    `fem_adhesion.common.jobs.solve_all`: jobs, dask, progress.
     """
 
     def inputs(source: Source) -> Plain:
@@ -95,7 +93,7 @@ def run(
     return solve_all(
         curves,
         store,
-        work=partial(work, reading=reading, **asked),
+        work=partial(outcome, reading=reading, **asked),
         inputs=inputs,
         name=lambda source: curve_of(source.named),
         write=dict,

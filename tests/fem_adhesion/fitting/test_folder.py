@@ -13,7 +13,8 @@ from synthetic_curves import synthetic, write
 from fem_adhesion import cli
 from fem_adhesion.common.files import open_store
 from fem_adhesion.common.numbers import engineering
-from fem_adhesion.fitting.folder import Source, code, outcome, run, sources, spreads, told, write_csv
+from fem_adhesion.fitting import folder
+from fem_adhesion.fitting.folder import Source, code, run, sources, spreads, told, write_csv
 from fem_adhesion.fitting.model import Apparatus
 from fem_adhesion.report.page import fit_section
 from halfspace.errors import InputError
@@ -33,13 +34,13 @@ def _work(source, *, reading, radius, **_):
 
 @pytest.fixture
 def curves(tmp_path):
-    folder = tmp_path / "curves"
-    folder.mkdir()
-    shutil.copy(DATA / "spectroscopy_two.nid", folder)
-    (folder / "first.csv").write_text("piezo_m,force_N\n")
-    (folder / "README.md").write_text("no curve")
+    made = tmp_path / "curves"
+    made.mkdir()
+    shutil.copy(DATA / "spectroscopy_two.nid", made)
+    (made / "first.csv").write_text("piezo_m,force_N\n")
+    (made / "README.md").write_text("no curve")
     CALLS.clear()
-    return folder
+    return made
 
 
 def test_a_folder_is_all_its_curves(curves):
@@ -49,12 +50,13 @@ def test_a_folder_is_all_its_curves(curves):
         sources([curves / "README.md"])
 
 
-def test_a_study_is_resumed_and_a_changed_file_fitted_again(curves, tmp_path):
+def test_a_study_is_resumed_and_a_changed_file_fitted_again(curves, tmp_path, monkeypatch):
     found = sources([curves])
+    monkeypatch.setattr(folder, "outcome", _work)
 
     def fitted(**asked):
         store = open_store(tmp_path / "kept", code(), resume=True)
-        return run(found, READING, ASKED | asked, store, work=_work, jobs=1)
+        return run(found, READING, ASKED | asked, store, jobs=1)
 
     first = fitted()
     assert fitted() == first
@@ -68,7 +70,7 @@ def test_a_study_is_resumed_and_a_changed_file_fitted_again(curves, tmp_path):
 
 
 def test_a_curve_that_cannot_be_used_is_told_and_ends_nothing(curves):
-    (bad,) = run([Source(curves / "first.csv")], READING, ASKED, work=outcome, jobs=1)
+    (bad,) = run([Source(curves / "first.csv")], READING, ASKED, jobs=1)
     assert "0 lines of data" in bad["reason"]
     assert "model" not in bad
 
