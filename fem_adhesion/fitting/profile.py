@@ -108,8 +108,6 @@ def profiled(problem: Problem, tabors: Sequence[float], limits: tuple[float, flo
         _exchange(problem, fits)
     least, most = (round(math.log(limit), 9) for limit in limits)
     scan = Scan(problem, (least, most), fits)
-    if least == most:
-        return Profile(scan.best, (scan.best,), (False, False))
     scan.minimise()
     is_open = scan.follow(-1), scan.follow(1)
     order = sorted(scan.fits)
