@@ -41,9 +41,8 @@ def run(options: argparse.Namespace) -> int:
         1 if the numbers are not sound, else 0.
     """
     if (options.submission is None) == (options.problems is None):
-        raise InputError(
-            "a CSV file and --problems are given; give numbers to compare or a directory for sheets, not both"
-        )
+        given = "neither a CSV file nor" if options.problems is None else "a CSV file and"
+        raise InputError(f"{given} --problems given, limit: one; give numbers to compare or a directory for sheets")
     if options.problems is not None:
         return _write(options)
     refuse(options, ("names",), "with --problems")

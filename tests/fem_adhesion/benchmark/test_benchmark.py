@@ -195,6 +195,11 @@ def test_a_filled_template_agrees_with_its_sheets(judged, tmp_path):
     assert "with w = 0.2" in sheets["dugdale-0.2-1"]
 
 
+@pytest.mark.parametrize(("given", "words"), [("", "neither a CSV"), ("x.csv --problems sheets", "a CSV file and")])
+def test_either_numbers_or_sheets_are_given(refused, given, words):
+    refused("benchmark", given, words=words)
+
+
 def test_each_body_and_law_that_has_a_name_has_a_statement(refused):
     stated = {row["name"] for row in data_rows("benchmark", "statements.csv")}
     assert stated == (PARTS["body"].keys() | PARTS["law"].keys()) - {"meshed", "tabulated", "layers"}
