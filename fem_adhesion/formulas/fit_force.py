@@ -30,13 +30,8 @@ FOLDS = ((0.35, 0.4, 0.45, 0.5, 0.6, 0.65, 0.69), (-0.63, -0.72, -0.81, -0.9007,
 """Tabor parameters and nearly the real part of the approach of both folds, which are complex there."""
 
 
-def pieces() -> list[dict[str, Any]]:
-    """Content of ``halfspace/theories/force.json``."""
-    return [piece(low, high) for low, high in PIECES]
-
-
 def piece(low: float, high: float) -> dict[str, Any]:
-    """Coefficients on one piece of Tabor parameters."""
+    """Coefficients on one piece of Tabor parameters, of which ``halfspace/theories/force.json`` has a list."""
     curves = _curves(_tabors(low, high, TABORS))
     t = fits.place(curves["tabor"], low, high)
     middle, slope = _free(low, high, t, curves) if low < FOLDS[0][0] else _folds(low, high)
@@ -151,4 +146,4 @@ def _sums(t: Array, curves: dict[str, Array], middle: Array, slope: Array, round
 
 
 if __name__ == "__main__":
-    fits.FORCE_FILE.write_text(json.dumps(pieces()) + "\n", encoding="utf-8")
+    fits.FORCE_FILE.write_text(json.dumps([piece(*ends) for ends in PIECES]) + "\n", encoding="utf-8")
