@@ -22,14 +22,6 @@ from halfspace.errors import InputError
 DATA = Path(__file__).parents[2] / "data" / "afm"
 READING = {"stiffness": None, "sensitivity": None}
 ASKED = {"radius": 10e-9, "modulus": 1e11, "poisson": 0.3}
-CALLS = []
-
-
-def _work(source, *, reading, radius, **_):
-    """Stand-in for a fit, which takes seconds: its pull-off force is the radius that was asked for."""
-    assert reading == READING
-    CALLS.append(source)
-    return source.named | {"pull_off": {"value": radius, "unit": "N"}}
 
 
 @pytest.fixture
@@ -39,7 +31,6 @@ def curves(tmp_path):
     shutil.copy(DATA / "spectroscopy_two.nid", made)
     (made / "first.csv").write_text("piezo_m,force_N\n")
     (made / "README.md").write_text("no curve")
-    CALLS.clear()
     return made
 
 
@@ -51,8 +42,15 @@ def test_a_folder_is_all_its_curves(curves):
 
 
 def test_a_study_is_resumed_and_a_changed_file_fitted_again(curves, tmp_path, monkeypatch):
-    found = sources([curves])
-    monkeypatch.setattr(folder, "outcome", _work)
+    found, calls = sources([curves]), []
+
+    def outcome(source, *, reading, radius, **_):
+        """Stand-in for a fit, which takes seconds: its pull-off force is the radius that was asked for."""
+        assert reading == READING
+        calls.append(source)
+        return source.named | {"pull_off": {"value": radius, "unit": "N"}}
+
+    monkeypatch.setattr(folder, "outcome", outcome)
 
     def fitted(**asked):
         store = open_store(tmp_path / "kept", code(), resume=True)
@@ -60,13 +58,13 @@ def test_a_study_is_resumed_and_a_changed_file_fitted_again(curves, tmp_path, mo
 
     first = fitted()
     assert fitted() == first
-    assert tuple(CALLS) == found
+    assert tuple(calls) == found
     with (curves / "first.csv").open("a") as file:
         file.write("1,2\n")
     assert fitted() == first
-    assert CALLS[3:] == [found[0]]
+    assert calls[3:] == [found[0]]
     assert fitted(radius=20e-9)[0]["pull_off"]["value"] == 20e-9
-    assert len(CALLS) == 7
+    assert len(calls) == 7
 
 
 def test_a_curve_that_cannot_be_used_is_told_and_ends_nothing(curves):
