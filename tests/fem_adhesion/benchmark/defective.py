@@ -115,12 +115,9 @@ def hertz_radius(tabor):
     a = np.linspace(1e-3, 4, 400_001)
     W = 4 / 3 * a**3 - np.sqrt(8 * np.pi * a**3)
     least, zero = int(np.argmin(W)), int(np.flatnonzero(W < 0)[-1])
-    found = {"pull_off_load": W[least], "pull_off_approach": tabor * a[least] ** 2, "pull_off_contact_radius": a[least]}
-    return found | {
-        "zero_load_approach": tabor * a[zero] ** 2,
-        "zero_load_contact_radius": a[zero],
-        "jump_off_approach": 0.0,
-    }
+    places = {"pull_off": least, "zero_load": zero}
+    states = {name: closed_forms.ContactState(tabor * a[at] ** 2, W[at], a[at]) for name, at in places.items()}
+    return numbers(states) | {"jump_off_approach": 0.0}
 
 
 def rounded(values, digits, noise=0.0, seed=0):
