@@ -90,7 +90,3 @@ def make_parser() -> Parser:
     for command in COMMANDS:
         command.add_to(commands)
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

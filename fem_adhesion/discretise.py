@@ -6,7 +6,7 @@ The nodes of a pair are those of the first, smaller sphere. Beyond its core, 0.9
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import Any
@@ -84,26 +84,31 @@ def discretise(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
     """
     outer, coordinate = layout_of(scene, how)
     core = lines[: len(lines) - len(outer) + 1] if scene.sized else lines
-    rim, counter = lines[len(core) - 1 :], scene.counter
-    if counter is None:
-        first = _condensed(scene.body, mesh_of(scene, core, how), how)
+    rim, meshes = lines[len(core) - 1 :], meshes_of(scene, core, how)
+    first, *second = (_condensed(body, mesh, how) for body, mesh in zip(scene.bodies, meshes, strict=True))
+    operator, surface = first.operator, scene.surface
+    if scene.body.file:
         own, R = first.surface, scene.sphere_radius
-        surface = TabulatedSurface(own.radii, R * own.depths, R * own.slopes) if scene.body.file else scene.surface
-        operator = first.operator
-        if scene.body.layered and len(rim) > 1:  # strata that are far out and rigid
-            operator = with_rigid_rim(operator, rim, FLAT)
-        return Discretised(first, operator, surface, scene, first.unknowns)
-    meshes = pair_meshes(scene, counter, core, how)
-    first, second = (_condensed(body, mesh, how) for body, mesh in zip((scene.body, counter), meshes, strict=True))
-    part, rest = scene.shares
-    both = replace(first.operator, compliance=part * first.operator.compliance + rest * second.operator.compliance)
-    operator = with_rigid_rim(both, rim, coordinate)
-    return Discretised(first, operator, scene.surface, scene, first.unknowns + second.unknowns)
+        surface = TabulatedSurface(own.radii, R * own.depths, R * own.slopes)
+    for other in second:
+        part, rest = scene.shares
+        operator = replace(operator, compliance=part * operator.compliance + rest * other.operator.compliance)
+    if len(rim) > 1 and (second or scene.body.layered):  # what is far out is rigid
+        operator = with_rigid_rim(operator, rim, coordinate)
+    return Discretised(first, operator, surface, scene, sum(body.unknowns for body in (first, *second)))
 
 
-def mesh_of(scene: Scene, core: Array, how: Discretisation) -> Any:
-    """Mesh of the first body, from the ends of the cells that move with the contact."""
-    return scene.body.mesh(scene.radii[0], core, finest_length(scene, how), how)
+def meshes_of(scene: Scene, core: Array, how: Discretisation, radii: Sequence[float] = ()) -> list[Any]:
+    """Meshes of the bodies, from the ends of the cells that move with the contact, with which that of a pair ends.
+
+    The radii of the bodies are those of the scene unless given.
+    """
+    (R, *others), length = radii or scene.radii, finest_length(scene, how)
+    mesh = scene.body.mesh(R, core, length, how)
+    if scene.counter is None:
+        return [mesh]
+    end = float(layout_of(scene, how, R)[1].radius(core[-1:])[0][0])
+    return [with_contact_to(each, end) for each in (mesh, scene.counter.facing(others[0], core, length, R, how))]
 
 
 def finest_length(scene: Scene, how: Discretisation) -> float:
@@ -112,9 +117,12 @@ def finest_length(scene: Scene, how: Discretisation) -> float:
     return of_sequence(length, LENGTHS, np.round) if scene.sized else length
 
 
-def layout_of(scene: Scene, how: Discretisation) -> Layout:
-    """Cells of the surface that stand still, and the coordinate along it; a pair has no rings, as its rim is rigid."""
-    return scene.body.layout(scene.radii[0], replace(how, rings=0) if scene.counter else how)
+def layout_of(scene: Scene, how: Discretisation, R: float | None = None) -> Layout:
+    """Cells of the surface that stand still, and the coordinate along it; a pair has no rings, as its rim is rigid.
+
+    The radius R of the first body is the scene's unless given.
+    """
+    return scene.body.layout(R or scene.radii[0], replace(how, rings=0) if scene.counter else how)
 
 
 def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) -> SizedBody:
@@ -169,14 +177,6 @@ def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
     held = exterior.of_material(FAR_FIELDS[body.held], body.beyond)
     stiffness = partial(stiffness_of, space, body.regions)
     return condense(space, material.poisson, far_field=held, stiffness=stiffness, traction=material.area)
-
-
-def pair_meshes(scene: Scene, counter: Body, core: Array, how: Discretisation) -> tuple[Any, Any]:
-    """Meshes of two bodies, whose contact ends with the cells that are given."""
-    (R1, R2), (_, coordinate) = scene.radii, layout_of(scene, how)
-    end = float(coordinate.radius(core[-1:])[0][0])
-    meshes = mesh_of(scene, core, how), counter.facing(R2, core, finest_length(scene, how), R1, how)
-    return with_contact_to(meshes[0], end), with_contact_to(meshes[1], end)
 
 
 def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: SurfaceCoordinate) -> ElasticOperator:

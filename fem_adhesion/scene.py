@@ -108,6 +108,11 @@ class Scene:
         return self.body.size / self.counter.size if self.counter and math.isfinite(self.counter.size) else 0.0
 
     @property
+    def bodies(self) -> tuple[Body, ...]:
+        """What is elastic: one body, or two."""
+        return (self.body,) if self.counter is None else (self.body, self.counter)
+
+    @property
     def material(self) -> Material:
         """Of the first body."""
         return self.body.material
@@ -124,7 +129,7 @@ class Scene:
         Harmonics are not asked about a pointed tip: half of its gap's error on the axis was left by a decade of rtol,
         up to 2.2 times the estimate.
         """
-        known = [body.checked_by for body in (self.body, self.counter) if body]
+        known = [body.checked_by for body in self.bodies]
         return known[0] if all(known) and not ("harmonics" in known and self.surface.pointed) else None
 
     @property

@@ -33,7 +33,7 @@ def lengths(scene: Scene) -> tuple[float, tuple[float, ...]]:
 
     With eps = 1 the sphere has R = rho; mu^3 = R w^2 and beta^3 = R^2 w with w = dgamma/(E* eps).
     """
-    bodies = [body.size for body in (scene.body, scene.counter) if body]
+    bodies = [body.size for body in scene.bodies]
     curvature = sum(1 / rho for rho in bodies)
     own = scene.profile if curvature == 0 else None
     rho = getattr(own, "radius_ratio", math.inf) if curvature == 0 else 1 / curvature
@@ -68,8 +68,8 @@ LOGARITHMS = np.arange(-25.0, 40.0, USUAL.step)  # of gaps H; a tension that fal
 class Numbers:
     """What a tension makes: its integral from equilibrium on, and of the law of that work 1 what follows.
 
-    Gaps H of the edge and of `range`, beyond which half of the work is left, and of `reach`, a tenth, in eps; strength
-    in dgamma/eps, stiffness in dgamma/eps^2.
+    Gaps H of the edge and of `range`, beyond which half of the work is left, in eps; strength in dgamma/eps, stiffness
+    in dgamma/eps^2.
     """
 
     work: Estimate
@@ -77,7 +77,6 @@ class Numbers:
     strength: float
     stiffness: float
     range: float
-    reach: float
 
 
 def numbers(tension: Tension) -> Numbers:
@@ -88,13 +87,13 @@ def numbers(tension: Tension) -> Numbers:
     work = float(parts.sum())
     doubt = abs(2 * float(parts[::2].sum()) - work)
     left = np.cumsum(parts[::-1])[::-1] - parts / 2
-    half, tenth = (math.exp(np.interp(-part * work, -left, LOGARITHMS)) for part in (0.5, 0.1))
+    half = math.exp(np.interp(-0.5 * work, -left, LOGARITHMS))
     top = int(np.argmax(s))
     a, b, c = np.polyfit(np.arange(-1, 2), s[top - 1 : top + 2], 2)
     edge, strength = math.exp(LOGARITHMS[top] - step * b / (2 * a)), float(c - b**2 / (4 * a))
     d = np.array([-1e-5, 1e-5])
     stiffness = float(np.diff(tension(1 + d))[0] / np.diff(d)[0])
-    return Numbers(Estimate(work, doubt), edge, strength / work, stiffness / work, half, tenth)
+    return Numbers(Estimate(work, doubt), edge, strength / work, stiffness / work, half)
 
 
 @lru_cache(maxsize=8)

@@ -16,7 +16,7 @@ from fem_adhesion.discretise import (
     FAR_FIELDS,
     finest_length,
     layout_of,
-    mesh_of,
+    meshes_of,
     quadrilateral,
     sized_body,
 )
@@ -337,7 +337,7 @@ class ScenesBody(Valued):
         first, last = (coordinate.of(min(radius, self.farthest)) for radius in (inner, outer))
         growth = scene.scales.growth(how.growth)
         lines = grid.graded(first, self.length, float(ends[0]), growth=growth, until=last)
-        space = Space(mesh_of(scene, lines, how), quadrilateral(how.degree))
+        space = Space(meshes_of(scene, lines, how)[0], quadrilateral(how.degree))
         pressure = quadrilateral(how.degree - 1) if projects(space, scene.poisson) else None
         return finite_strain_problem(
             material_body(space, scene.poisson, 1 / R, pressure),

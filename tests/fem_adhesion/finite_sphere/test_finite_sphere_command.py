@@ -165,7 +165,7 @@ def interruptible():
 def test_a_signal_ends_the_study_and_its_workers(tmp_path):
     """What is done is kept, and --resume goes on with it; the other signal is held by the next test."""
     command = ["finite-sphere", "--out", str(tmp_path / "out"), "--tabor", "0.3", "3", "--radius-ratio", "1000"]
-    line = [sys.executable, "-m", "fem_adhesion.cli", *command, "--jobs", "2"]
+    line = [sys.executable, "-m", "fem_adhesion", *command, "--jobs", "2"]
     with started(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as study:
         wait_until(lambda: list(tmp_path.glob("out/cases/[!.]*.json")) or study.poll() is not None)
         assert study.poll() is None
