@@ -171,27 +171,38 @@ def test_closed_forms_agree():
 # --- defects that both solvers share ---
 
 
-def _amplitude(monkeypatch):
-    original = PowerLaw.amplitude.fget
-    monkeypatch.setattr(PowerLaw, "amplitude", property(lambda law: 1.01 * original(law)))
-    for module in (scene, trace):  # they would refuse it before any work
+def _changed(owner, name, change):
+    """A method or property whose result goes through a function."""
+
+    def inject(monkeypatch):
+        original = owner.__dict__[name]
+        if callable(original):
+            monkeypatch.setattr(owner, name, lambda self, *args: change(original(self, *args)))
+        else:
+            of = original.func if hasattr(original, "func") else original.fget
+            monkeypatch.setattr(owner, name, property(lambda self: change(of(self))))
+
+    return inject
+
+
+def _scaled(owner, name, factor):
+    return _changed(owner, name, lambda value: factor * value)
+
+
+def _unchecked(monkeypatch):
+    """Let a law pass that would be refused before any work."""
+    for module in (scene, trace):
         monkeypatch.setattr(module, "require_law", lambda law: law)
 
 
-def _profile(monkeypatch):
-    for name in ("height", "slope"):
-        original = getattr(Paraboloid, name)
-        monkeypatch.setattr(Paraboloid, name, lambda self, radii, of=original: 1.01 * of(self, radii))
+def _slope_of_the_load(factor):
+    parts = np.where(np.arange(4) == LOAD, factor, 1.0)
 
+    def inject(monkeypatch):
+        gradient = ContactProblem.gradient
+        monkeypatch.setattr(ContactProblem, "gradient", lambda self, x, weights: gradient(self, x, weights * parts))
 
-def _load(monkeypatch):
-    load, gradient = Acting.load.func, ContactProblem.gradient
-
-    def scaled(self, x, weights):
-        return gradient(self, x, weights * np.where(np.arange(4) == LOAD, 1.01, 1.0))
-
-    monkeypatch.setattr(Acting, "load", property(lambda state: 1.01 * load(state)))
-    monkeypatch.setattr(ContactProblem, "gradient", scaled)
+    return inject
 
 
 def _jumps_on_a_spring(monkeypatch):
@@ -211,71 +222,51 @@ def _elastic_term(monkeypatch):
     monkeypatch.setattr(ContactProblem, "residual", stiffer)
 
 
-def _slope_of_the_load(monkeypatch):
-    gradient = ContactProblem.gradient
-
-    def short(self, x, weights):
-        return gradient(self, x, weights * np.where(np.arange(4) == LOAD, 0.99, 1.0))
-
-    monkeypatch.setattr(ContactProblem, "gradient", short)
-
-
-def _scaled(owner, name, factor):
-    """A method or property times a factor."""
+def _events(change):
+    """Events of a stage as a function of them and the curve's segments has them."""
 
     def inject(monkeypatch):
-        original = owner.__dict__[name]
-        if callable(original):
-            monkeypatch.setattr(owner, name, lambda self, *args: factor * original(self, *args))
-        else:
-            of = original.func if hasattr(original, "func") else original.fget
-            monkeypatch.setattr(owner, name, property(lambda self: factor * of(self)))
+        find = search.find_events
+        monkeypatch.setattr(refinement, "find_events", lambda segments: change(find(segments), segments))
 
     return inject
 
 
-def _central_gap(monkeypatch):
-    gap = Acting.central_gap.func
-    monkeypatch.setattr(Acting, "central_gap", property(lambda state: gap(state) + 0.01))
+def _jump_off_is_jump_on(events, _):
+    return events | {"jump_off": events["jump_on"]} if "jump_on" in events else events
 
 
-def _jump_off_is_jump_on(monkeypatch):
-    find = search.find_events
-
-    def found(segments):
-        events = find(segments)
-        return events | {"jump_off": events["jump_on"]} if "jump_on" in events else events
-
-    monkeypatch.setattr(refinement, "find_events", found)
-
-
-def _state_at(name, place, approach):
-    """The energy's first or last state at another approach."""
-
-    def inject(monkeypatch):
-        find, other = search.find_events, replace(conditions.Condition(0), value=approach)
-        monkeypatch.setattr(
-            refinement,
-            "find_events",
-            lambda segments: find(segments) | {name: search._state(search.brackets_of(segments, other)[place], other)},
-        )
-
-    return inject
+def _another_last_state(events, segments):
+    """The energy's last state at another approach."""
+    other = replace(conditions.Condition(0), value=0.1)
+    return events | {"zero_approach": search._state(search.brackets_of(segments, other)[-1], other)}
 
 
 LIMITS = ("integral of tension", "Bradley pull_off load", "JKR pull_off load")
-SHARED = {
-    "law": (_amplitude, {"equations: load", *(f"limit: {name}" for name in LIMITS)}),
-    "profile": (_profile, {"equations: residual", "apart: zero_load balance"}),
-    "load": (_load, {"equations: load", "apart: pull_off attraction"}),
-    "spring": (_jumps_on_a_spring, {"apart: jump_on load"}),
-    "slope of the load": (_slope_of_the_load, {"equations: load's slope"}),
-    "elastic term": (_elastic_term, {"equations: residual"}),
-    "contact edge": (_scaled(PowerLaw, "edge_gap", 1.02), {"law: edge"}),
-    "contact radius": (_scaled(Acting, "contact_radius", 1.02), {"apart: zero_load contact_radius"}),
-    "central gap": (_central_gap, {"apart: pull_off central_gap", "apart: zero_load central_gap"}),
-    "jump_off is jump_on": (_jump_off_is_jump_on, {"apart: jump_off stable side"}),
-    "energy's last state": (_state_at("zero_approach", -1, 0.1), {"apart: energy released"}),
+SHARED = {  # what is injected, and the rows that show it
+    "law": (
+        [_unchecked, _scaled(PowerLaw, "amplitude", 1.01)],
+        {"equations: load", *(f"limit: {name}" for name in LIMITS)},
+    ),
+    "profile": (
+        [_scaled(Paraboloid, name, 1.01) for name in ("height", "slope")],
+        {"equations: residual", "apart: zero_load balance"},
+    ),
+    "load": (
+        [_scaled(Acting, "load", 1.01), _slope_of_the_load(1.01)],
+        {"equations: load", "apart: pull_off attraction"},
+    ),
+    "spring": ([_jumps_on_a_spring], {"apart: jump_on load"}),
+    "slope of the load": ([_slope_of_the_load(0.99)], {"equations: load's slope"}),
+    "elastic term": ([_elastic_term], {"equations: residual"}),
+    "contact edge": ([_scaled(PowerLaw, "edge_gap", 1.02)], {"law: edge"}),
+    "contact radius": ([_scaled(Acting, "contact_radius", 1.02)], {"apart: zero_load contact_radius"}),
+    "central gap": (
+        [_changed(Acting, "central_gap", lambda gap: gap + 0.01)],
+        {"apart: pull_off central_gap", "apart: zero_load central_gap"},
+    ),
+    "jump_off is jump_on": ([_events(_jump_off_is_jump_on)], {"apart: jump_off stable side"}),
+    "energy's last state": ([_events(_another_last_state)], {"apart: energy released"}),
 }
 
 
@@ -289,8 +280,9 @@ LEVELS = {
 
 @pytest.mark.parametrize("defect", SHARED)
 def test_a_shared_defect_is_rejected_by_the_row_that_should(defect, monkeypatch):
-    inject, shown_by = SHARED[defect]
-    inject(monkeypatch)
+    injected, shown_by = SHARED[defect]
+    for inject in injected:
+        inject(monkeypatch)
     scene = Scene(1.0 if any(name.startswith("apart: jump") for name in shown_by) else 0.5)
     rows = [row for level in {name.split(":")[0] for name in shown_by} for row in LEVELS[level](scene)]
     assert shown_by <= {row.quantity for row in rows if row.verdict == "disagree"}
