@@ -10,6 +10,7 @@ import argparse
 import secrets
 import sys
 import time
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -38,29 +39,8 @@ def honesty(asked):
     return int(bool(dishonest))
 
 
-def hard(asked):
-    """Attempt every hard case; 1 if one ends otherwise than was declared."""
-    from hard import attempt_all
-
-    return attempt_all(asked.out)
-
-
-def constants(asked):
-    """Print what each number of an algorithm decides, at its half and at its double."""
-    from constants import measure
-
-    return measure(asked.names)
-
-
-def intervals(asked):
-    """Print how often the intervals of a fit hold the truth; 1 if too seldom."""
-    from intervals import judge
-
-    return judge(asked.count)
-
-
 def main(arguments=None):
-    """Run what is asked for; exit code 1 if something is not as it should be."""
+    """Run what is asked for, of which no more is loaded; exit code 1 if something is not as it should be."""
     parser = argparse.ArgumentParser(prog="tests/estimates", description=__doc__)
     tools = parser.add_subparsers(required=True)
     tool = tools.add_parser("honesty")
@@ -73,13 +53,13 @@ def main(arguments=None):
     tool.add_argument("--minutes", type=float, default=float("inf"), help="after which no scene is begun")
     tool.add_argument("--jobs", type=int, help="processes; as many as processors unless given")
     tool = tools.add_parser("hard")
-    tool.set_defaults(run=hard)
+    tool.set_defaults(run=lambda asked: import_module("hard").attempt_all(asked.out))
     tool.add_argument("out", type=Path, help="directory to write")
     tool = tools.add_parser("constants")
-    tool.set_defaults(run=constants)
+    tool.set_defaults(run=lambda asked: import_module("constants").measure(asked.names))
     tool.add_argument("--names", nargs="+", metavar="NAME", help="Class or Class.field; all unless given")
     tool = tools.add_parser("intervals")
-    tool.set_defaults(run=intervals)
+    tool.set_defaults(run=lambda asked: import_module("intervals").judge(asked.count))
     tool.add_argument("--count", type=int, default=200, help="of the curves")
     asked = parser.parse_args(arguments)
     return asked.run(asked)

@@ -57,9 +57,9 @@ def record(code, version, refinement):
 
 
 def run(code, version, refinements, problems, tabors=TABORS):
-    """Record the events at each refinement; problems(tabor, **refinement) gives the problem's name and its `solve`."""
-    for name, refinement in refinements.items():
-        with record(code, version, name) as rows:
+    """Record the events at each refinement; problems(tabor, *refinement) gives the problem's name and its `solve`."""
+    for refinement in refinements:
+        with record(code, version, "-".join(f"{number:g}" for number in refinement)) as rows:
             for tabor in tabors:
-                problem, solve = problems(tabor, **refinement)
+                problem, solve = problems(tabor, *refinement)
                 rows += events(solve, problem, 0.25 + 2 * tabor, 0.3 + 0.2 * tabor)

@@ -40,6 +40,5 @@ def problem(tabor, points, width):
     return f"half-space-{tabor:g}", solve
 
 
-REFINEMENTS = {f"{n}-{w:g}": {"points": n, "width": w} for n, w in CASES}
 if __name__ == "__main__":
-    run("adhesion", version("Adhesion"), REFINEMENTS, problem)
+    run("adhesion", version("Adhesion"), CASES, problem)

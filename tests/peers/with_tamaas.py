@@ -32,7 +32,6 @@ def problem(tabor, points, width):
     return f"exponential-{tabor:g}", solve
 
 
-REFINEMENTS = {f"{n}-{w:g}": {"points": n, "width": w} for n, w in CASES}
 if __name__ == "__main__":
     tamaas.set_log_level(tamaas.LogLevel.error)
-    run("tamaas", tamaas.__version__, REFINEMENTS, problem)
+    run("tamaas", tamaas.__version__, CASES, problem)

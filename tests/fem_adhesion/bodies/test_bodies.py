@@ -10,7 +10,7 @@ from whole_sphere import surface_deflection
 
 from fem_adhesion.elasticity.cells import stiffness_of
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.exterior import clamped, sliding
+from fem_adhesion.elasticity.exterior import sliding
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh import curved, spheres
@@ -18,7 +18,6 @@ from halfspace.elastic import grid
 from halfspace.profiles.formulas import SphereSurface
 
 R = 2.5
-GRIPS = {"sliding": sliding, "bonded": clamped}
 
 
 def space(degree, *, finest=0.15, growth=2.0):
@@ -27,10 +26,10 @@ def space(degree, *, finest=0.15, growth=2.0):
     return Space(spheres.hemisphere(R, lines, depths), ElementQuadP(degree))
 
 
-def condensed(degree, poisson=0.3, grip="sliding", traction="projected", **mesh):
+def condensed(degree, poisson=0.3, traction="projected", **mesh):
     body = space(degree, **mesh)
     K = partial(stiffness_of, body, [Elastic(poisson)])
-    return condense(body, poisson, far_field=GRIPS[grip], stiffness=K, traction=traction)
+    return condense(body, poisson, far_field=sliding, stiffness=K, traction=traction)
 
 
 def gaussian(radii):

@@ -178,11 +178,17 @@ def test_a_half_space_under_a_stiff_film_ends_far_enough_out():
 # --- fields ---
 
 
-def test_stresses_jump_at_an_interface_where_they_must():
-    """What pulls across is continuous; what does not differs by the moduli of the strains that both sides have."""
+@pytest.fixture(scope="module")
+def inside_coated():
+    """State of a coated half-space at zero load, and a cut through it."""
     scene, event = Scene(1.0, STIFF), traced(Scene(1.0, STIFF), 1e-4).stages[-1]["zero_load"]
     state = fields.state_at(scene, event.problem, event.point)
-    cut = Cut(state.space, Lattice(1, triangular=False))
+    return state, Cut(state.space, Lattice(1, triangular=False))
+
+
+def test_stresses_jump_at_an_interface_where_they_must(inside_coated):
+    """What pulls across is continuous; what does not differs by the moduli of the strains that both sides have."""
+    state, cut = inside_coated
     (r, z), region = cut.points, cut.node_regions
     sides = [np.flatnonzero((np.abs(z + 2) < 1e-9) & (r < 3) & (region == n)) for n in (0, 1)]
     above, below = (side[np.argsort(r[side])] for side in sides)
@@ -211,10 +217,9 @@ def test_stresses_jump_at_an_interface_where_they_must():
 # --- compare and the command line ---
 
 
-def test_an_interface_is_drawn_and_written():
-    scene, event = Scene(1.0, STIFF), traced(Scene(1.0, STIFF), 1e-4).stages[-1]["zero_load"]
-    state = fields.state_at(scene, event.problem, event.point)
-    cut, view = Cut(state.space, Lattice(1, triangular=False)), picture.view_of([state])
+def test_an_interface_is_drawn_and_written(inside_coated):
+    state, cut = inside_coated
+    view = picture.view_of([state])
     region, heights = inside(state, cut, 1.0)["region"], cut.points[1]
     assert heights[region == 0].min() == heights[region == 1].max() == -2
     (line,) = picture.section(state, view).interfaces

@@ -70,18 +70,13 @@ def _full(*_args, **_kwargs):
 
 @pytest.mark.parametrize("command", ["speed", "greenwood", "finite-sphere"])
 def test_a_full_disk_ends_each_study_and_leaves_nothing(command, tmp_path, monkeypatch, refused):
-    from fem_adhesion.finite_sphere import page as finite_sphere_page
-    from fem_adhesion.finite_sphere import study as finite_sphere
-    from fem_adhesion.greenwood import page as greenwood_page
-    from fem_adhesion.greenwood import study as greenwood
-    from fem_adhesion.speed import page as speed_page
-    from fem_adhesion.speed import study as speed
-
-    for module, name in ((speed_page, "write"), (greenwood_page, "write"), (finite_sphere_page, "write")):
-        monkeypatch.setattr(module, name, _full)
-    monkeypatch.setattr(speed, "measure", lambda *_, **__: None)
-    monkeypatch.setattr(greenwood, "compute", lambda **_: None)
-    monkeypatch.setattr(finite_sphere, "run", lambda *_, **__: [SimpleNamespace(status="solved", failed=False)])
+    for study, work, made in (
+        ("speed", "measure", None),
+        ("greenwood", "compute", None),
+        ("finite_sphere", "run", [SimpleNamespace(status="solved", failed=False)]),
+    ):
+        monkeypatch.setattr(f"fem_adhesion.{study}.page.write", _full)
+        monkeypatch.setattr(f"fem_adhesion.{study}.study.{work}", lambda *_, made=made, **__: made)
     words = f"{tmp_path / 'out'} cannot be written (No space left on device)"
     refused(command, "--out", tmp_path / "out", words=words, code=1)
     assert not list(tmp_path.iterdir())
