@@ -212,22 +212,18 @@ class Scene:
         return (1.0,) if self.share is None else (1.0 - self.share, self.share)
 
     @property
-    def _as_lennard_jones(self) -> str:
-        """Tabor parameters of the 3-9 law that has the same work of adhesion and is as strong, or as stiff."""
-        by_strength = self.tabor * self.law.strength / LENNARD_JONES.strength
-        by_stiffness = self.tabor * math.sqrt(self.law.stiffness / LENNARD_JONES.stiffness)
-        return f"as strong as the 3-9 law at tabor {by_strength:.4g}, as stiff at {by_stiffness:.4g}"
-
-    @property
     def words(self) -> list[str]:
         """What it is, in words: Tabor parameter, material and body, and what else is not as usual."""
-        parts = {
-            f"under a {words_of(self.profile)}": self.profile is not None and self.profile != self.body.shape,
-            f"law {words_of(self.law)}, {self._as_lennard_jones}": self.law != LENNARD_JONES,
-        }
         words = [f"tabor {self.tabor:g}", f"poisson {self.poisson:g}", *self.body.words]
         words += [f"R/eps {self.radius_ratio:.4g}"] if self.radius_ratio else []
-        return [*words, *(word for word, holds in parts.items() if holds), *self._unusual]
+        if self.profile not in (None, self.body.shape):
+            words.append(f"under a {words_of(self.profile)}")
+        if self.law != LENNARD_JONES:  # the Tabor parameters at which that has the same work, and strength or stiffness
+            strong = self.tabor * self.law.strength / LENNARD_JONES.strength
+            stiff = self.tabor * math.sqrt(self.law.stiffness / LENNARD_JONES.stiffness)
+            like = f"as strong as the 3-9 law at tabor {strong:.4g}, as stiff at {stiff:.4g}"
+            words.append(f"law {words_of(self.law)}, {like}")
+        return [*words, *self._unusual]
 
     @property
     def _unusual(self) -> list[str]:

@@ -72,7 +72,7 @@ def compare(
         # A decade of tolerance leaves a tenth of an estimate at best: what is wider than that stays open.
         reach = np.inf if closer == USUAL.closer[-1] else closer
         left = [row for row in case.rows if row.verdict != "agree"]
-        wins = bool(left) and not any(row.error > reach * row.budget for row in left)
+        wins = not any(row.error > reach * row.budget for row in left)
         if rtol > closer * USUAL.tightest and case.verdict == "inconclusive" and wins:
             fe, case = tried(_solved, scene, rtol, rtol / closer, solve, refusals=True) or (fe, case)
     apart = *_by_triangles(scene, fe, rtol), *elimination.rows(scene, fe), *from_scratch.events(scene, fe)

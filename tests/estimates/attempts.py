@@ -310,6 +310,7 @@ LOST = Refusal(NotConverged, "last relative step", "40 Newton steps", "try a nea
 RIGID = "1e-12 <= tabor", "halfspace.theories.closed_forms.bradley_load"
 SOFT = "tabor <= 300", "halfspace.theories.closed_forms.jkr_load"
 RTOL, LOAD_LIMIT = ("1e-9 <= rtol <= 0.1", "take 1e-5"), ("0 < to_load <= 1000", "take 5")
+FINER, LARGER = "refine the grid there", "take 50 or more"
 SIZE = "2 <= radius_ratio <= 1e12", "it is the radius over the spacing: change one of the two"
 REFUSED = {  # what is attempted, and the class, value, limit and remedy of the refusal
     "start with gaps of 0.8 eps": (partial(from_state, 2.0, -3.0, gap=-0.2), *LOST),
@@ -317,38 +318,22 @@ REFUSED = {  # what is attempted, and the class, value, limit and remedy of the 
     "start from separation, right of jump_on": (partial(from_state, 2.0, 0.0, -9.0), *LOST),
     "start from contact, just left of jump_off": (partial(from_state, 2.0, -3.6, -3.0), *LOST),
     "contact on cells that are fine on the axis": (
-        partial(from_state, 2.0, -3.0, -3.0),
-        GridTooCoarse,
-        "spacing 0.202 beta",
-        "exceeds 0.175 beta for tabor 2",
-        "refine the grid there",
+        partial(from_state, 2.0, -3.0, -3.0), GridTooCoarse, "spacing 0.202 beta", "exceeds 0.175 beta for", FINER,
     ),
     "mesh too coarse by ten": (
-        partial(too_coarse, 10.0),
-        GridTooCoarse,
-        "spacing 0.208 beta",
-        "exceeds 0.084 beta for tabor 2",
-        "refine the grid there",
+        partial(too_coarse, 10.0), GridTooCoarse, "spacing 0.208 beta", "exceeds 0.084 beta for", FINER,
     ),
     "clamped block of 7 beta, tabor 1": (
-        partial(block, 1.0, radius=7.0, far_field="clamped"), InputError, "radius = 7", "8 <", "take 50 or more",
+        partial(block, 1.0, radius=7.0, far_field="clamped"), InputError, "radius = 7", "8 <", LARGER,
     ),
-    "block of 5.5 beta, tabor 0.02": (
-        partial(block, 0.02, radius=5.5), InputError, "radius = 5.5", "35.4 <", "take 50 or more",
-    ),
-    "block of 1e300 beta": (
-        partial(block, 1.0, radius=1e300), InputError, "radius = 1e+300", "<= 1e9", "take 50 or more",
-    ),
+    "block of 5.5 beta, tabor 0.02": (partial(block, 0.02, radius=5.5), InputError, "radius = 5.5", "35.4 <", LARGER),
+    "block of 1e300 beta": (partial(block, 1.0, radius=1e300), InputError, "radius = 1e+300", "<= 1e9", LARGER),
     "poisson 0.49999999": (partial(rubber, 0.49999999), InputError, "0.49999999", "<= 0.499999", "take 0.4999"),
     "sphere of R/eps 1e13": (partial(hemisphere, radius_ratio=1e13), InputError, "= 1e+13", *SIZE),
     "sphere of R/eps 1": (partial(hemisphere, radius_ratio=1.0), InputError, "= 1 is", *SIZE),
     "sphere of R/eps nan": (partial(hemisphere, radius_ratio=math.nan), InputError, "= nan", *SIZE),
     "sphere smaller than its contact": (
-        partial(hemisphere, 50.0),
-        InputError,
-        "radius_ratio = 100",
-        "2.25 tabor = 112 or more",
-        "take a stiffer or larger one",
+        partial(hemisphere, 50.0), InputError, "radius_ratio = 100", "2.25 tabor = 112 or more", "a stiffer or larger",
     ),
     "tabor 1e-300": (partial(traced, 1e-300), InputError, "tabor = 1e-300", *RIGID),
     "tabor 1e12": (partial(traced, 1e12), InputError, "tabor = 1e+12", *SOFT),

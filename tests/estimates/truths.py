@@ -66,10 +66,9 @@ def on(stage, state):
     return {name: required(stage.moved(event, stage(event).problem)) for name, event in anew.items()}
 
 
-def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
-    """The half-space under a sphere or two."""
-    R = float(np.sqrt(radius_ratio / tabor))  # of the pair
-    return under_surface(tabor, SphereSurface(R * (1 + 1 / counter_radius), R * (1 + counter_radius)))
+def under_sphere(tabor, radius_ratio):
+    """The half-space under a sphere."""
+    return under_surface(tabor, SphereSurface(float(np.sqrt(radius_ratio / tabor))))
 
 
 def under_surface(tabor, surface, law=LENNARD_JONES):

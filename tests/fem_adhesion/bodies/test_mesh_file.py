@@ -240,12 +240,12 @@ def added(points, more):
     return numbers
 
 
-MIDDLE = "cells['triangle6'][70]"  # a cell inside the body
+MIDDLE = "triangle6[70]"  # a cell inside the body
 TURNED = r"cells are flat or turned inside out, one at \(r, z\) = \("
 SPOILT = [  # what is done to a sound mesh, and what is said of it
     ("points[:, 0] -= 0.5", r"r = -0\.5 is outside r >= 0"),
     (
-        "groups['grip'] = added(points, points[groups['grip'].ravel()]).reshape(groups['grip'].shape)",
+        "grip = added(points, points[grip.ravel()]).reshape(grip.shape)",
         r'16 lines of group "grip" are no sides of cells, limit 0; merge',
     ),
     (
@@ -253,28 +253,16 @@ SPOILT = [  # what is done to a sound mesh, and what is said of it
         r"6 nodes coincide with another, one at \(r, z\) = \(.*\), limit 0",
     ),
     (f"a, b, c, m = {MIDDLE}[:4]; points[m] = 0.1 * (points[a] + points[b]) + 0.8 * points[c]", TURNED),
-    ("cells['triangle6'] = np.tile(cells['triangle6'], (2, 1))", r"more than two cells.*; remove double cells"),
+    ("triangle6 = np.tile(triangle6, (2, 1))", r"more than two cells.*; remove double cells"),
+    ("triangle6 = np.append(triangle6, added(points, ELSEWHERE)[None], 0)", r"falls into 2 pieces, limit 1"),
+    (f"grip = np.append(grip, {MIDDLE}[None, [0, 1, 3]], 0)", r"^1 lines of the groups run inside"),
+    ("grip = np.append(grip, contact[-2:], 0)", r'^2 lines are both in "contact" and in "g'),
+    ("axis = np.append(axis, side, 0)", r'group "axis" reaches r = 0\.8, limit r = 0'),
+    ("axis = axis[1:]", r'^1 boundary lines at r = 0 are not in group "axis", one at \(r, z\) = \(0, -0\.1\)'),
+    ("contact = np.delete(contact, 7, axis=0)", r'group "contact" has 4 ends, limit 2'),
+    ("contact = contact[2:]", r'group "contact" starts at r = 0\.1, limit r = 0'),
     (
-        "cells['triangle6'] = np.append(cells['triangle6'], added(points, ELSEWHERE)[None], 0)",
-        r"falls into 2 pieces, limit 1",
-    ),
-    (f"groups['grip'] = np.append(groups['grip'], {MIDDLE}[None, [0, 1, 3]], 0)", r"^1 lines of the groups run inside"),
-    (
-        "groups['grip'] = np.append(groups['grip'], groups['contact'][-2:], 0)",
-        r'^2 lines are both in "contact" and in "g',
-    ),
-    (
-        "groups['axis'] = np.append(groups['axis'], groups.pop('side'), 0)",
-        r'group "axis" reaches r = 0\.8, limit r = 0',
-    ),
-    (
-        "groups['axis'] = groups['axis'][1:]",
-        r'^1 boundary lines at r = 0 are not in group "axis", one at \(r, z\) = \(0, -0\.1\)',
-    ),
-    ("groups['contact'] = np.delete(groups['contact'], 7, axis=0)", r'group "contact" has 4 ends, limit 2'),
-    ("groups['contact'] = groups['contact'][2:]", r'group "contact" starts at r = 0\.1, limit r = 0'),
-    (
-        "groups['contact'] = np.append(groups['contact'], groups.pop('side'), 0)",
+        "contact = np.append(contact, side, 0)",
         r"^4 lines of the contact turn back or run upright, one at \(r, z\) = \(0\.8, ",
     ),
     # Narrower in the depth, so that the contact line overhangs between the last three of its nodes.
@@ -295,21 +283,15 @@ SPOILT = [  # what is done to a sound mesh, and what is said of it
     ),
     (f"points[{MIDDLE}[1], 1] = np.nan", r"^1 coordinates are not finite"),
     ("points[:, 2] = 0.1 * points[:, 0]", r"third coordinate = 0\.08 must be 0"),
+    ("bottom = grip; del grip", r'group "grip" is missing, the file has "axis", "contact", "side", "bottom"; name'),
+    ("del axis, contact, grip, side", r'group "axis", "contact", "grip" is missing, the file has none'),
+    ("quad8 = SHAPES['quad8'](np.arange(9).reshape(1, 3, 3))", r'cells are of 2 types, "quad8", "triangle6", limit 1'),
+    ("tetra = np.array([[0, 1, 2, 3]])", r'cells of type "tetra", "triangle6" are none of'),
     (
-        "groups['bottom'] = groups.pop('grip')",
-        r'group "grip" is missing, the file has "axis", "contact", "side", "bottom"; name',
-    ),
-    ("groups.clear()", r'group "axis", "contact", "grip" is missing, the file has none'),
-    (
-        "cells['quad8'] = SHAPES['quad8'](np.arange(9).reshape(1, 3, 3))",
-        r'cells are of 2 types, "quad8", "triangle6", limit 1',
-    ),
-    ("cells['tetra'] = np.array([[0, 1, 2, 3]])", r'cells of type "tetra", "triangle6" are none of'),
-    (
-        "cells.clear(); cells['VTK_LAGRANGE_TRIANGLE'] = np.arange(10)[None]",
+        "del triangle6; VTK_LAGRANGE_TRIANGLE = np.arange(10)[None]",
         r'cells of type "VTK_LAGRANGE_TRIANGLE" are none of .*; mesh the meridian section, in order 1 or 2',
     ),
-    ("cells.clear()", "Physical Surface"),
+    ("del triangle6", "Physical Surface"),
 ]
 ELSEWHERE = np.array([[2, -1, 0], [3, -1, 0], [2, -0.5, 0], [2.5, -1, 0], [2.5, -0.75, 0], [2, -0.75, 0]])
 
@@ -317,7 +299,10 @@ ELSEWHERE = np.array([[2, -1, 0], [3, -1, 0], [2, -0.5, 0], [2.5, -1, 0], [2.5, 
 @pytest.mark.parametrize(("edit", "complaint"), SPOILT)
 def test_a_bad_mesh_is_refused_with_value_limit_and_remedy(tmp_path, edit, complaint):
     points, cells, groups = paraboloid()
-    exec(edit, globals(), {"points": points, "cells": cells, "groups": groups})
+    known = {"points": points, **cells, **groups}
+    exec(edit, globals(), known)
+    cells = {name: known[name] for name in ("triangle6", "quad8", "tetra", "VTK_LAGRANGE_TRIANGLE") if name in known}
+    groups = {name: known[name] for name in ("axis", "contact", "side", "grip", "bottom") if name in known}
     assert re.search(complaint, refusal(written(to_meshio(points, cells, groups), tmp_path / "bad.vtu")))
 
 
