@@ -1,4 +1,4 @@
-"""The hemisphere of finite elements: its shape, uniform states, and an elastic sphere in Legendre polynomials."""
+"""The hemisphere of finite elements: uniform states, and an elastic sphere in Legendre polynomials."""
 
 from functools import partial
 
@@ -15,7 +15,6 @@ from fem_adhesion.elasticity.space import Space
 from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh import curved, spheres
 from halfspace.elastic import grid
-from halfspace.profiles.formulas import SphereSurface
 
 R = 2.5
 
@@ -38,29 +37,6 @@ def gaussian(radii):
 
 def cosine(radii):
     return np.sqrt((1 - radii / R) * (1 + radii / R))
-
-
-@pytest.fixture(scope="module")
-def fine():
-    return space(10)
-
-
-@pytest.mark.parametrize(("traction", "area"), [("projected", 1), ("surface", 2)])
-def test_areas(traction, area):
-    weights = condensed(6, traction=traction).operator.weights
-    assert np.sum(weights) == pytest.approx(area * np.pi * R**2, rel=1e-9)
-
-
-def test_the_contact_surface_is_the_sphere_below_the_wall(fine):
-    r, z = surface_points(fine, "contact")
-    assert np.max(np.abs(np.hypot(r, z + R) - R)) < 1e-8 * R
-    inside = r < 0.9 * R  # the profile has a vertical tangent at the equator
-    assert np.max(np.abs(z + SphereSurface(R).height(r * inside) / R)[inside]) < 1e-8 * R
-    assert np.max(z) < 0
-
-
-def surface_points(body, name):
-    return boundary_basis(body, name, 8).global_coordinates()
 
 
 # Linear displacements are in the space of cells whose shape has the element's degree or less.
