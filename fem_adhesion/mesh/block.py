@@ -34,10 +34,8 @@ def quarter_disc(radius: float, size: SizeFunction) -> Any:
 
     Triangles are cut until they are small enough; new nodes of the far boundary are pushed onto the arc, so the body is
     a polygon inscribed in the quarter disc. The size, in beta, is bounded away from zero. Returns a MeshTri with the
-    boundaries "axis", "contact" and "far"; InputError if the radius is not positive.
+    boundaries "axis", "contact" and "far".
     """
-    if not (np.isfinite(radius) and radius > 0.0):
-        raise InputError(f"radius = {radius} must be positive and finite; give a length in beta")
     diagonal = radius * np.sqrt(0.5)
     nodes = np.array([[0.0, radius, diagonal, 0.0], [0.0, 0.0, -diagonal, -radius]])
     mesh = MeshTri(nodes, np.array([[0, 0], [1, 2], [2, 3]]))

@@ -19,8 +19,6 @@ from fem_adhesion.mesh.block import with_named_boundaries
 from fem_adhesion.mesh.curved import CurvedQuads, Patch, joined, refined_towards
 from halfspace.elastic import grid
 from halfspace.elastic.grid import SurfaceCoordinate
-from halfspace.errors import InputError
-from halfspace.limits import require_cap_angle
 from halfspace.values import Array, Index, Valued
 
 CORE, DEPTH = 1.7, 0.9  # radius and depth of the core, a tensor grid about the pole, in R on the flat plane
@@ -200,15 +198,12 @@ def held_sphere(R: float, x_lines: Array, depths: Array, cap_angle: float) -> Cu
     """Mesh the sphere of radius R that touches z = 0 from below, held over a cap around the point opposite the pole.
 
     Lines and depths, (m + 1,) and (n + 1,), are of the core of the half that faces the wall, as those of
-    `hemisphere`: on the flat plane from 0 to CORE R and DEPTH R. Lengths are in beta; the
-    half-angle of the cap is in degrees, 1 to 89.99, or 90. The boundaries are "axis", "contact" (the half that faces
-    the wall) and "far" (the cap); the surface between them is free and belongs to none. Beyond the core the contact's
-    cells end at `contact_ends` of `rings_at_equator`. InputError if cap_angle is out of
-    range, or x_lines are fewer than three.
+    `hemisphere`: on the flat plane from 0 to CORE R and DEPTH R; m is 2 or more, as the cap ends at one of the lines.
+    Lengths are in beta; the half-angle of the cap is in degrees, 1 to 89.99, or 90. The boundaries are "axis",
+    "contact" (the half that faces the wall) and "far" (the cap); the surface between them is free and belongs to none.
+    Beyond the core the contact's cells end at `contact_ends` of `rings_at_equator`.
     """
-    angle = np.radians(require_cap_angle(cap_angle))
-    if len(x_lines) < 3:
-        raise InputError(f"x_lines = {x_lines} are {len(x_lines)}, limit 3: the cap ends at one of them; give more")
+    angle = np.radians(cap_angle)
     m, n = len(x_lines), len(depths)
     met, rim = even(R, m - 1, n - 1), _rim(R, cap_angle)
     far, own = _moved_to(rim, R, met), m * n + (m + n - 1) * (LAYERS - 1)

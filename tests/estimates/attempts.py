@@ -201,24 +201,13 @@ def obtuse(angle):
 
 
 def flattened(mesh, radius, angle):
-    """Press the triangle that rests on the surface at a radius flat, until its angle below is as given.
-
-    InputError if that turns a neighbouring triangle over.
-    """
+    """Press the triangle that rests on the surface at a radius flat, until its angle below is as given."""
     surface = mesh.facets[:, mesh.boundaries["contact"]]
     base = surface[:, np.argmin(np.abs(mesh.p[0, surface].mean(axis=0) - radius))]
     cell = mesh.t[:, np.isin(mesh.t, base).sum(axis=0) == 2]
     points, (a, b) = mesh.p.copy(), mesh.p[0, base]
     points[:, np.setdiff1d(cell, base)] = np.array([[(a + b) / 2], [-abs(b - a) / 2 / np.tan(angle / 2)]])
-    if np.any(_areas(points, mesh.t) * _areas(mesh.p, mesh.t) <= 0):
-        raise InputError(f"an angle of {angle:g} at radius {radius:g} turns a neighbouring triangle over; move it")
     return with_named_boundaries(MeshTri(points, mesh.t))
-
-
-def _areas(points, cells):
-    a, b, c = (points[:, vertex] for vertex in cells)
-    u, v = b - a, c - a
-    return (u[0] * v[1] - u[1] * v[0]) / 2
 
 
 def too_coarse(factor, tabor=2.0):

@@ -2,18 +2,15 @@
 
 import csv
 import json
-import math
 from functools import partial
 from pathlib import Path
 
 import hard
 import pytest
-from attempts import CASES, flattened
+from attempts import CASES
 from hard import Case, Locking, Measured, Refusal
-from skfem import MeshTri
 
 from fem_adhesion.common.fold_birth import FIRST, SECOND, tabor_of
-from fem_adhesion.mesh.block import graded_size, quarter_disc
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.values import Estimate
 
@@ -120,15 +117,6 @@ def test_the_number_worst_off_is_reported():
     (row,) = hard.run([Case("case", lambda: found)])
     assert (row.name, row.outcome, row.message) == ("case", "wrong", "b, against: truth")
     assert (row.error, row.estimate, row.newton_steps) == (1e-9, 1e-10, 7)
-
-
-def test_a_triangle_is_flattened_but_none_turned_over():
-    mesh = quarter_disc(10.0, graded_size(0.3, 1.0, 0.3))
-    flat = flattened(mesh, 0.5, math.radians(170))
-    assert isinstance(flat, MeshTri)
-    assert flat.boundaries.keys() == mesh.boundaries.keys()
-    with pytest.raises(InputError, match="turns a neighbouring triangle over; move it"):
-        flattened(mesh, 0.5, math.radians(5))
 
 
 LOCKED = [Locking(0.49, "P2", "Taylor-Hood P2-P1", 1e-3, 2e-4)]

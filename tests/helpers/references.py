@@ -17,7 +17,6 @@ from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.elasticity.surface import boundary_points
 from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.errors import InputError
 from halfspace.values import Array, Index
 
 
@@ -55,17 +54,13 @@ def strain_energy(body: CondensedBody, pressure: Array) -> float:
     return 0.5 * float(inside + outside @ (body.exterior.stiffness @ outside) - spring)
 
 
-def taylor_hood(
-    space: Space, poisson: float, pressure: Any, *, far_field: FarField = point_load, points: int | None = None
-) -> ElasticOperator:
+def taylor_hood(space: Space, poisson: float, pressure: Any, *, far_field: FarField = point_load) -> ElasticOperator:
     """Condense a block of displacements and continuous pressures to its surface, as `condense` does.
 
     The pressure's element is one degree below the displacement's: ElementTriP1 with ElementTriP2, ElementQuadP(p - 1)
-    with ElementQuadP(p). InputError if poisson is zero, at which the pressure is undetermined.
+    with ElementQuadP(p). The pressure is undetermined where poisson is zero.
     """
     lam = lame_parameters(poisson)[0]
-    if lam == 0.0:
-        raise InputError("poisson = 0 leaves the pressure undetermined; use condense, nothing locks there")
     exterior = with_interiors(far_field(space, poisson), space)
     T = exterior.reduction
     K, coupling, volume = _mixed_matrices(space, poisson, pressure)
@@ -73,7 +68,7 @@ def taylor_hood(
     # Symmetric and quasi-definite: it can be factorised in any order without pivoting.
     saddle = sparse.block_array([[A, (coupling @ T).T], [coupling @ T, -volume / lam]], format="csc")
     factors = splu(saddle, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    surface = boundary_points(space, "contact", space.degree + 2 if points is None else points)
+    surface = boundary_points(space, "contact", space.degree + 2)
     rows = T.tocsr()[space.components[1, surface.functions]]
     forces = sparse.vstack([rows.T, sparse.csr_array((volume.shape[0], len(surface.functions)))]).toarray()
     return surface_operator(surface, exterior, rows @ factors.solve(forces)[: T.shape[1]])

@@ -28,17 +28,9 @@ def require_line_of(row, cells):
 
 
 def row_as_made(row):
-    return {
-        "quantity": row.quantity,
-        "unit": row.unit,
-        "first": row.first.value,
-        "second": row.second.value,
-        "difference": row.difference,
-        "first_error": row.first.error,
-        "second_error": row.second.error,
-        "budget": row.budget,
-        "verdict": row.verdict,
-    }
+    own = {name: getattr(row, name) for name in ("quantity", "unit", "difference", "budget", "verdict")}
+    own |= {"first": row.first.value, "second": row.second.value}
+    return own | {"first_error": row.first.error, "second_error": row.second.error}
 
 
 MISSED = "jump_off approach, zero_load approach"  # by the first of the made-up paths
