@@ -69,9 +69,7 @@ def test_it_knows_every_module_that_a_case_loads():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {name for name in ast.literal_eval(done.stdout) if name.split(".")[0] in ("halfspace", "fem_adhesion")}
-    kept = {f"fem_adhesion.common.{name}" for name in ("store", "jobs", "facts", "files", "progress", "numbers")} | {
-        "fem_adhesion.common"
-    }
+    kept = {f"fem_adhesion.common.{name}" for name in ("jobs", "facts", "files", "numbers")} | {"fem_adhesion.common"}
     assert loaded - kept <= set(sources(CASES))
 
 
