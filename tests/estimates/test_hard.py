@@ -1,6 +1,5 @@
 """Hard cases end as was declared for them: in a number within its estimate, or in a refusal of a given kind."""
 
-import csv
 import json
 from functools import partial
 from pathlib import Path
@@ -9,6 +8,7 @@ import hard
 import pytest
 from attempts import CASES
 from hard import Case, Locking, Measured, Refusal
+from page_tables import rows_of
 
 from fem_adhesion.common.fold_birth import FIRST, SECOND, tabor_of
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
@@ -44,9 +44,9 @@ def test_the_command_tells_how_every_case_ended(command, record):
     assert record["summary"] == told
     assert told in command.out
     for name, rows in (("hard", record["cases"]), ("locking", record["locking"])):
-        with (command / f"hard/{name}.csv").open() as file:
-            lines = list(csv.DictReader(file))
-        assert lines == [{key: "" if v is None else str(v) for key, v in row.items()} for row in rows]
+        assert rows_of(command / f"hard/{name}.csv") == [
+            {key: "" if v is None else str(v) for key, v in row.items()} for row in rows
+        ]
 
 
 def test_the_births_of_folds():

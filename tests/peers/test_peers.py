@@ -1,14 +1,13 @@
 """Codes that nobody here wrote, as `make peers` found them, beside our values, and what refining them shows."""
 
-import csv
 from pathlib import Path
 
 import pytest
+from page_tables import rows_of
 from table import COLUMNS, judged, problem_of
 from with_halfspace import dugdale_limit
 
-with (Path(__file__).parent / "peers.csv").open(newline="") as file:
-    ROWS = list(csv.DictReader(file))
+ROWS = rows_of(Path(__file__).parent / "peers.csv")
 PEERS = ("adhesion", "ngsolve", "tamaas")
 
 
@@ -62,7 +61,5 @@ def test_refining_shows_that_a_grade_is_right(code, problem, cause, quantity, co
         return abs(float(row["deviation"]))
 
     assert all(cause in row["cause"].split(" or ") for row in of(code, problem=problem, refinement=coarse))
-    assert error(refined) < 0.6 * error(
-        coarse
-    )  # half the error, or less, where the domain or the grid is twice as good
+    assert error(refined) < 0.6 * error(coarse)  # half or less where the domain or the grid is twice as good
     assert not otherwise or error(otherwise) > 0.9 * error(coarse)
