@@ -17,14 +17,12 @@ from fem_adhesion.elasticity.elimination import DISSECTED
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy import stages as ladders
-from halfspace.accuracy.grids import GRIDS, Resolution, rings
+from halfspace.accuracy.grids import GRIDS, Resolution, half_space_charts
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung, charted
 from halfspace.accuracy.standing import Standing, left_between, sized, standing
-from halfspace.elastic.compliance import to_infinity
-from halfspace.elastic.operators import Homogeneous
+from halfspace.elastic.compliance import ElasticOperator, to_infinity
 from halfspace.equilibrium.charts import COMPRESSION, Chart
-from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import ErrorRule
 from halfspace.errors import GridTooCoarse
@@ -144,23 +142,19 @@ def discretised_block(scene: Scene, to_load: float, how: Discretisation, size: f
     return sized(body, how.degree + 2)
 
 
-def block_charts(scene: Scene, how: Discretisation, radius: float, to_load: float = COMPRESSION) -> Charts:
-    """Charts of the scene's block of a size in beta, continued by a half-space."""
+def block_charts(scene: Scene, how: Discretisation, radius: float, to_load: float) -> Charts:
+    """Charts of the scene's block of a size in beta, continued by a half-space: the half-space's by other operators."""
     extent = np.sqrt(2 * scene.tabor * float(scene.surface.height(np.array(radius))))
-    lines = rings(scene.scales, Resolution(how.degree + 2, how.finest, how.growth, extent), to_load)
-    centred = _to_infinity(scene, lines.centred, how)
-    first = Chart(centred.problem, centred.unknowns, lines.until)
-    if lines.edge is None:
-        return (first,)
-    edge = _to_infinity(scene, lines.edge, how)
-    following = ContactProblem(Homogeneous(edge.operator), scene.tabor, scene.law, scene.surface)
-    return first, Chart(following, edge.unknowns)
+    made: list[Discretised] = []
 
+    def with_infinite_cell(_: int, reach: float, lines: Array) -> ElasticOperator:
+        made.append(discretise(scene, lines, how))
+        return to_infinity(made[-1].operator, how.degree + 1, reach)
 
-def _to_infinity(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
-    """Block with one more cell, that reaches to infinity."""
-    made = discretise(scene, lines, how)
-    return replace(made, operator=to_infinity(made.operator, how.degree + 1, scene.scales.tail_reach))
+    resolution = Resolution(how.degree + 2, how.finest, how.growth, extent)
+    charts = half_space_charts(scene.scales, resolution, to_load=to_load, make=with_infinite_cell)
+    own = zip(charts, made, strict=True)  # an event stays on the chart on which it was found
+    return tuple(replace(chart, unknowns=its.unknowns, leave=np.inf) for chart, its in own)
 
 
 # Bodies with a length

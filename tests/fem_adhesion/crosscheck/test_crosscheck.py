@@ -1,6 +1,7 @@
 """The harness agrees where it should and, with a defect put into one side, refuses and says which quantity shows it."""
 
 import json
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -17,6 +18,7 @@ from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Case, Row
 from fem_adhesion.elasticity import cells
+from halfspace.accuracy.grids import half_space_charts
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import Morse, PowerLaw
@@ -37,9 +39,13 @@ def _cells(name, change):
 def _problem(made):
     """Another contact problem in the place of the finite elements' own."""
 
+    def charts(*how, **more):
+        problems = [(chart, chart.problem) for chart in half_space_charts(*how, **more)]
+        return [replace(chart, problem=made(p.operator, p.tabor, p.law, p.profile)) for chart, p in problems]
+
     def inject(monkeypatch):
-        for module in (convergence, discretise):
-            monkeypatch.setattr(module, "ContactProblem", made)
+        monkeypatch.setattr(convergence, "half_space_charts", charts)
+        monkeypatch.setattr(discretise, "ContactProblem", made)
 
     return inject
 
