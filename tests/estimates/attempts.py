@@ -307,10 +307,12 @@ REFUSED = {  # what is attempted, and the class, value, limit and remedy of the 
     "start from separation, right of jump_on": (partial(from_state, 2.0, 0.0, -9.0), *LOST),
     "start from contact, just left of jump_off": (partial(from_state, 2.0, -3.6, -3.0), *LOST),
     "contact on cells that are fine on the axis": (
-        partial(from_state, 2.0, -3.0, -3.0), GridTooCoarse, "spacing 0.202 beta", "exceeds 0.175 beta for", FINER,
+        partial(from_state, 2.0, -3.0, -3.0),
+        GridTooCoarse, "spacing 0.202 beta", "exceeds 0.175 beta for tabor 2", FINER,
     ),
     "mesh too coarse by ten": (
-        partial(too_coarse, 10.0), GridTooCoarse, "spacing 0.208 beta", "exceeds 0.084 beta for", FINER,
+        partial(too_coarse, 10.0),
+        GridTooCoarse, "spacing 0.208 beta", "exceeds 0.084 beta for tabor 2", FINER,
     ),
     "clamped block of 7 beta, tabor 1": (
         partial(block, 1.0, radius=7.0, far_field="clamped"), InputError, "radius = 7", "8 <", LARGER,
@@ -322,7 +324,8 @@ REFUSED = {  # what is attempted, and the class, value, limit and remedy of the 
     "sphere of R/eps 1": (partial(hemisphere, radius_ratio=1.0), InputError, "= 1 is", *SIZE),
     "sphere of R/eps nan": (partial(hemisphere, radius_ratio=math.nan), InputError, "= nan", *SIZE),
     "sphere smaller than its contact": (
-        partial(hemisphere, 50.0), InputError, "radius_ratio = 100", "2.25 tabor = 112 or more", "a stiffer or larger",
+        partial(hemisphere, 50.0),
+        InputError, "radius_ratio = 100", "2.25 tabor = 112 or more", "take a stiffer or larger one",
     ),
     "tabor 1e-300": (partial(traced, 1e-300), InputError, "tabor = 1e-300", *RIGID),
     "tabor 1e12": (partial(traced, 1e12), InputError, "tabor = 1e+12", *SOFT),
