@@ -1,22 +1,24 @@
 """The assessment of a real contact: units, refusals, levers, closed theories, and the answer as a whole."""
 
-import io
 import json
 import math
 import re
-from dataclasses import replace
+from dataclasses import asdict, replace
+from itertools import chain
 
 import numpy as np
 import pytest
-from rich.console import Console
+from assessed import LINE, SILICA, Said, assert_alike, shown
+from page_tables import value_and_error
 from scipy.optimize import brentq
+from whole_runs import tables_in
 
 import halfspace
-from fem_adhesion import cli, convergence
+from fem_adhesion import convergence
 from fem_adhesion.assess import figure as assess_figure
 from fem_adhesion.assess import study
 from fem_adhesion.assess import theories as assess_theories
-from fem_adhesion.assess.predictions import QUANTITIES, WORDS, Prediction, Quantity, computed, large_tabor
+from fem_adhesion.assess.predictions import WORDS, Prediction, Quantity, computed, large_tabor
 from fem_adhesion.assess.study import assess
 from fem_adhesion.assess.terminal import contact_radius, record, report
 from fem_adhesion.assess.verdict import Distance, cautions, left_out, ranked, regime, verdict
@@ -30,7 +32,6 @@ from halfspace.theories import closed_forms as theories
 from halfspace.theories.exact_sphere import JKRSphere
 from halfspace.theories.maugis import MaugisDugdale
 
-SILICA = {"radius": 100e-9, "modulus": 70e9, "poisson": 0.17, "work_of_adhesion": 0.1, "spacing": 0.3e-9}
 BEAD = {"radius": 50e-6, "modulus": 2e6, "poisson": 0.49, "work_of_adhesion": 0.05, "spacing": 0.3e-9}
 
 
@@ -81,6 +82,8 @@ def test_what_is_no_quantity_is_refused_in_one_line(text, name, message):
         ({"stiffness": 0.0}, "stiffness = 0 N/m is outside 0 < stiffness; leave it out for fixed grips"),
         ({"counter_modulus": 1e9}, "counter_poisson = None, limit: with both or none of"),
         ({"counter_modulus": 1e9, "counter_poisson": 0.5}, "poisson = 0.5 is outside"),
+        ({"thickness": 0.2e-9}, "is outside 3e-10 m < thickness, the equilibrium spacing"),
+        ({"thickness": 1e-6, "counter_radius": 1e-6}, "limit: a rigid sphere on a thin sample"),
     ],
 )
 def test_a_contact_that_cannot_be_is_refused(change, message):
@@ -156,10 +159,7 @@ def soft_path():
 def test_jkr_with_reach_is_within_its_errors(soft_path, stiffness):
     units = Units(2.0, 3.0, 5.0, 7.0)  # all of its units differ
     truth = computed("half-space", soft_path, stiffness, units)
-    theory = large_tabor(300.0, stiffness, units)
-    assert set(theory.values) == set(truth.values) == set(QUANTITIES)
-    for name, quantity in theory.values.items():
-        assert abs(quantity.value - truth.values[name].value) < quantity.error + truth.values[name].error, name
+    assert_alike(large_tabor(300.0, stiffness, units).values, truth.values)
 
 
 # The scenes -----------------------------------------------------------------------------------------------------------
@@ -226,29 +226,10 @@ def test_two_soft_or_rigid_spheres_have_no_true_profile(tabor):
 
 # The answer -----------------------------------------------------------------------------------------------------------
 
-LINE = {name.replace("_", "-"): f"{SILICA[name]}{unit}" for name, unit in (("radius", "m"), ("modulus", "Pa"))}
-LINE |= {"work-of-adhesion": "0.1J/m^2", "spacing": "0.3nm", "poisson": "0.17", "stiffness": "0.2N/m"}
-ARGUMENTS = ["assess", *(word for name, text in LINE.items() for word in (f"--{name}", text))]
-
-
-class Said:
-    """What one run of the command computed, printed and wrote."""
-
-    def __init__(self, arguments, folder):
-        self.json, self.plot, found = folder / "a.json", folder / "a.svg", []
-        with pytest.MonkeyPatch.context() as patch, io.StringIO() as out:
-            patch.setattr(study, "assess", lambda *given: found.append(assess(*given)) or found[0])
-            patch.setattr("sys.stdout", out)
-            patch.delenv("COLUMNS", raising=False)
-            self.code = cli.main([*arguments, "--json", str(self.json), "--plot", str(self.plot), "--digits", "all"])
-            self.text = out.getvalue()
-        (self.assessment,) = found
-        self.record = json.loads(self.json.read_text())
-
 
 @pytest.fixture(scope="module")
 def said(tmp_path_factory):
-    return Said(ARGUMENTS, tmp_path_factory.mktemp("assess"))
+    return Said(f"{LINE} --digits all", tmp_path_factory.mktemp("assess"))
 
 
 @pytest.fixture(scope="module")
@@ -261,36 +242,17 @@ def bead():
     return assess(Contact(**BEAD, stiffness=0.2))
 
 
-def _printed(console_text):
+def _printed(text):
     """Numbers of the tables by row, column and kind, SI or %: value and bound, in SI where there is a unit."""
-    rows = [
-        [cell.strip() for cell in re.split("[│┃]", line)[1:-1]]
-        for line in console_text.splitlines()
-        if line.startswith(("│", "┃"))
-    ]
-    found, heads, above = {}, [], []
-    for row in rows:
-        if not row[0]:
-            above.append(row)  # a line of headings but the last
-        elif row[0] in ("quantity", "model"):
-            heads, above = (
-                [" ".join(filter(None, lines)).rpartition(" ") for lines in zip(*above, row, strict=True)],
-                [],
-            )
-        else:
-            for (head, _, unit), cell in zip(heads[1:], row[1:], strict=True):
-                if number := re.fullmatch(r"(-?[\d.]+)\((\d+)\)", cell):
-                    size = next((10.0**e for e, p in PREFIXES.items() if unit in (p + "m", p + "N", p + "J")), 1.0)
-                    last = 10.0 ** -len(number[1].partition(".")[2])
-                    kind = "%" if unit == "%" else "SI"
-                    found[row[0], head, kind] = float(number[1]) * size, int(number[2]) * last * size
+    found = {}
+    for row in chain.from_iterable(tables_in(text)):
+        (_, name), *cells = row.items()
+        for header, cell in cells:
+            if number := value_and_error(cell):
+                head, _, unit = header.rpartition(" ")
+                size = next((10.0**e for e, p in PREFIXES.items() if unit in (p + "m", p + "N", p + "J")), 1.0)
+                found[name, head, "%" if unit == "%" else "SI"] = tuple(size * one for one in number)
     return found
-
-
-def _shown(assessment, width=150):
-    console = Console(width=width, file=io.StringIO())
-    console.print(report(assessment, DIGITS), crop=False)
-    return console.file.getvalue()
 
 
 def _check_table(text, assessment):
@@ -311,17 +273,10 @@ def _check_table(text, assessment):
 
 
 def _check_record(data, assessment):
-    models = {model["model"]: model["values"] for model in data["models"]}
-    assert list(models) == [model.model for model in assessment.models]
-    for model in assessment.models:
-        for name, quantity in model.values.items():
-            assert models[model.model].pop(name) == vars(quantity)
-        assert models[model.model] == {}
-    for found, deviation in zip(data["deviations"], assessment.deviations, strict=True):
-        assert found["quantity"] == deviation.quantity
-        for cause in ("profile", "body", "total"):
-            quantity = getattr(deviation, cause)
-            assert found[cause] == (vars(quantity) if quantity else None)
+    for model, found in zip(assessment.models, data["models"], strict=True):
+        assert found["model"] == model.model
+        assert found["values"] == {name: vars(quantity) for name, quantity in model.values.items()}
+    assert data["deviations"] == [asdict(deviation) for deviation in assessment.deviations]
     units = assessment.contact.units
     assert data["hamaker"] == pytest.approx(16 * np.pi * units.work_of_adhesion * units.spacing**2)
     assert (data["equivalent_radius"], data["contact_modulus"]) == (units.radius, units.modulus)
@@ -331,14 +286,13 @@ def _check_record(data, assessment):
 
 
 def test_the_command_prints_and_writes_what_it_computed(said):
-    assert said.code == 0
     assert f"written: {said.json} {said.plot}\n" in said.text
     _check_table(said.text, said.assessment)
     _check_record(said.record, said.assessment)
     assert said.record["input"]["grip"] == "sliding"
     assert said.record["input"]["stiffness"] == 0.2
     assert "16 pi dgamma eps^2 = 452.4 zJ" in said.text
-    drawn = set(re.findall(r"<!-- (.*?) -->", said.plot.read_text()))  # what the letters' outlines say
+    drawn = set(re.findall(r"<!-- (.*?) -->", said.drawn))  # what the letters' outlines say
     assert {"separation of the undeformed surfaces, nm", "force (compression positive), nN"} <= drawn
     assert {"half-space", "finite sphere", "JKR"} <= drawn
     for line in (said.assessment.verdict, *said.assessment.cautions):
@@ -348,10 +302,10 @@ def test_the_command_prints_and_writes_what_it_computed(said):
 @pytest.mark.parametrize("width", [80, 30])
 def test_every_number_unit_and_sentence_is_whole_at_any_width(silica, bead, width):
     for assessment in (silica, bead):
-        text = _shown(assessment, width)
+        text = shown(report(assessment, DIGITS), width)
         assert "…" not in text
         assert max(map(len, text.splitlines())) <= width
-        numbers = set(re.findall(r"-?[\d.]+\(\d+\)", _shown(assessment)))
+        numbers = set(re.findall(r"-?[\d.]+\(\d+\)", shown(report(assessment, DIGITS))))
         assert set(re.findall(r"-?[\d.]+\(\d+\)", text)) <= numbers
         assert assessment.verdict in text.replace("\n", " ").replace("  ", " ")
         flat = " ".join(text.split())
@@ -375,9 +329,7 @@ def test_the_half_space_in_si(silica):
 
 
 def test_the_answer_comes_first_to_four_digits(silica):
-    console = Console(width=80, file=io.StringIO())
-    console.print(report(silica), crop=False)
-    lines = console.file.getvalue().splitlines()
+    lines = shown(report(silica), 80).splitlines()
     force, on = (silica.finite.values[name].value * 1e9 for name in ("pull_off_force", "jump_on_separation"))
     assert lines[0].startswith("trust the finite sphere")
     assert lines[1:3] == [f"  pull-off force: {force:.4g} nN", f"  separation at jump-on: {on:.4g} nm"]
@@ -516,31 +468,23 @@ def test_yield_is_corrected_from_a_thousandth_to_a_tenth(modulus, told):
     assert all("raises that by more than its first order tells" in line for line in said)
 
 
-def test_a_verdict_heeds_the_cautions_that_pass_a_limit(capsys):
+def test_a_verdict_heeds_the_cautions_that_pass_a_limit(tmp_path):
     """A thin sample pressed in by more than its thickness: it is not to be trusted, only better than the others."""
-    thin = ["--radius", "20nm", "--modulus", "2GPa", "--poisson", "0.3", "--work-of-adhesion", "0.05J/m^2"]
-    assert cli.main(["assess", *thin, "--spacing", "0.2nm", "--thickness", "1nm"]) == 0
-    text = " ".join(capsys.readouterr().out.split())
+    thin = "--radius 20nm --modulus 2GPa --poisson 0.3 --work-of-adhesion 0.05J/m^2 --spacing 0.2nm --thickness 1nm"
+    text = " ".join(Said(thin, tmp_path).text.split())
     assert "indentation over thickness is 1.2, limit 0.2: finite strain matters" in text
     assert "trust no model as it is: finite strain matters, its base attracts through the sample; of these the" in text
     assert "trust the" not in text
 
 
-GLASS = ("--radius", "100nm", "--modulus", "72GPa", "--poisson", "0.17", "--work-of-adhesion", "0.063J/m^2")
-
-
-def test_a_loop_that_is_a_ripple_of_the_samples_is_none(tmp_path, capsys):
+def test_a_loop_that_is_a_ripple_of_the_samples_is_none(tmp_path):
     """Maugis's at a Tabor parameter of 4e-4 was one of 4e-35 J, whose error was not a number: nothing was shown."""
-    assert cli.main(["assess", *GLASS, "--spacing", "100nm", "--json", str(tmp_path / "found.json")]) == 0
-    models = {model["model"]: model["values"] for model in json.loads((tmp_path / "found.json").read_text())["models"]}
+    glass = "--radius 100nm --modulus 72GPa --poisson 0.17 --work-of-adhesion 0.063J/m^2 --spacing 100nm"
+    said = Said(glass, tmp_path)
+    models = {model["model"]: model["values"] for model in said.record["models"]}
     assert "energy_lost" not in models["Maugis-Dugdale"]
     assert all(math.isfinite(number["error"]) for values in models.values() for number in values.values())
-    assert "pull-off force" in capsys.readouterr().out
-
-
-def test_a_sample_is_thicker_than_the_spacing():
-    with pytest.raises(InputError, match="is outside 2e-10 m < thickness, the equilibrium spacing"):
-        Contact(2e-9, 2e9, 0.3, 0.05, 0.2e-9, thickness=0.2e-9)
+    assert "pull-off force" in said.text
 
 
 def test_the_yield_by_another_law_is_told_with_its_premise(silica):
@@ -555,7 +499,7 @@ def test_what_holds_for_the_3_9_law_is_said_of_it_alone(silica):
     other = replace(silica, contact=replace(silica.contact, law=Morse(3)))
     premise = "Maugis lambda and the theories with a range of attraction, Maugis-Dugdale and DMT-M, are the 3-9 law's."
     for assessment, usual in ((silica, True), (other, False)):
-        text = " ".join(_shown(assessment).split())
+        text = " ".join(shown(report(assessment, DIGITS)).split())
         assert ("Hamaker constant 16 pi" in text) == usual
         assert (premise in text) != usual
         assert (record(assessment)["hamaker"] is not None) == usual
@@ -568,10 +512,10 @@ def test_the_contact_radius_says_what_it_is_beside_others(silica, bead):
     by_morse = replace(silica, contact=replace(silica.contact, law=Morse(3)))
     assert f"where the gap is {1 + np.log(2) / 3:.6g} eps" in contact_radius(by_morse)  # 2 e^(-k H) = 1 there
     assert record(silica)["definitions"]["contact_radius"] == contact_radius(silica)
-    assert contact_radius(silica) in " ".join(_shown(silica).split())
+    assert contact_radius(silica) in " ".join(shown(report(silica)).split())
     bonded = replace(silica, contact=replace(silica.contact, grip="bonded"))
-    for shown, grip in ((silica, "sliding"), (bonded, "bonded")):
-        assert f"is an elastic hemisphere held at its mid-plane, {grip}." in " ".join(_shown(shown).split())
+    for assessment, grip in ((silica, "sliding"), (bonded, "bonded")):
+        assert f"is an elastic hemisphere held at its mid-plane, {grip}." in " ".join(shown(report(assessment)).split())
 
 
 @pytest.mark.parametrize("error", [InputError("a; do b"), NotConverged("a; do b"), GridTooCoarse("a; do b")])

@@ -1,36 +1,27 @@
 """A tip of another shape in an assessment: each profile and mesh against what the solvers give of it apart."""
 
-import json
-
 import numpy as np
 import pytest
+from assessed import LINE, SILICA, Said, assert_alike
 from whole_runs import ROOT
 
 import halfspace
-from fem_adhesion import Hemisphere, Scene, cli, convergence
-from fem_adhesion.assess.predictions import QUANTITIES, computed
+from fem_adhesion import Hemisphere, Scene, convergence
+from fem_adhesion.assess import figure
+from fem_adhesion.assess.predictions import Quantity, computed
 from fem_adhesion.assess.study import assess
 from fem_adhesion.common.contact import Contact
 from halfspace import profiles
 from halfspace.scaling import Units
 
-SILICA = {"radius": 100e-9, "modulus": 70e9, "poisson": 0.17, "work_of_adhesion": 0.1, "spacing": 0.3e-9}
 UNITS, STIFFNESS = Units(100e-9, 70e9 / (1 - 0.17**2), 0.1, 0.3e-9), 0.2
-OPTIONS = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--work-of-adhesion", "0.1J/m^2"]
-OPTIONS += ["--spacing", "0.3nm", "--stiffness", "0.2N/m"]
 MESH = ROOT / "meshes/hemisphere.msh"
 
 
 def told(record, name):
-    """Values of a model of the record, with their errors."""
-    return next(model["values"] for model in record["models"] if model["model"] == name)
-
-
-def agree(found, truth):
-    """Whether all quantities are the same within the errors of both."""
-    assert set(found) == set(truth) == set(QUANTITIES)
-    for name, one in found.items():
-        assert abs(one["value"] - truth[name].value) <= one["error"] + truth[name].error, name
+    """Values of a model of the record."""
+    values = next(model["values"] for model in record["models"] if model["model"] == name)
+    return {quantity: Quantity(**found) for quantity, found in values.items()}
 
 
 def table(folder):
@@ -49,14 +40,13 @@ def table(folder):
         ("tabulated:{table}", None),
     ],
 )
-def test_a_profile_gives_what_its_curve_does(word, profile, tmp_path, capsys):
-    out = tmp_path / "a.json"
-    assert cli.main(["assess", *OPTIONS, "--profile", word.format(table=table(tmp_path)), "--json", str(out)]) == 0
-    said, record = " ".join(capsys.readouterr().out.split()), json.loads(out.read_text())
+def test_a_profile_gives_what_its_curve_does(word, profile, tmp_path):
+    found = Said(f"{LINE} --profile {word.format(table=table(tmp_path))}", tmp_path)
+    said = " ".join(found.text.split())
     profile = profile or profiles.Tabulated(table(tmp_path), UNITS.radius_ratio)
     path = halfspace.trace(UNITS.tabor, profile=profile, rtol=1e-7, to_load=2.0)
     truth = computed("truth", path, STIFFNESS / UNITS.stiffness, UNITS)
-    agree(told(record, "given profile"), truth.values)
+    assert_alike(told(found.record, "given profile"), truth.values)
     assert said.startswith("trust the given profile;")
     assert "assume a paraboloid, and the tip is given as" in said
     blunted = "hyperboloid" in word or "tabulated" in word
@@ -70,24 +60,20 @@ def test_a_profile_on_a_thin_sample_is_traced_on_it():
     found = assess(Contact(**SILICA, thickness=20e-9, profile=profile, stiffness=STIFFNESS))
     path = halfspace.trace(UNITS.tabor, profile=profile, body=layer, rtol=1e-6, to_load=2.0)
     truth = computed("truth", path, STIFFNESS / UNITS.stiffness, UNITS)
-    agree({name: vars(one) for name, one in found.finite.values.items()}, truth.values)
+    assert_alike(found.finite.values, truth.values)
     assert [model.model for model in found.models[:3]] == ["half-space", "given profile", "thin sample"]
     assert found.sample is None  # Hertz's theory and the series know no such tip
 
 
 def test_the_mesh_of_a_hemisphere_is_the_hemisphere(tmp_path):
-    out = tmp_path / "a.json"
-    assert cli.main(["assess", *OPTIONS, "--mesh", str(MESH), "--json", str(out)]) == 0
-    record = json.loads(out.read_text())
+    record = Said(f"{LINE} --mesh {MESH}", tmp_path).record
     body = Hemisphere(radius_ratio=UNITS.radius_ratio, poisson=0.17)
     path = convergence.trace(Scene(UNITS.tabor, body), rtol=1e-4, to_load=2.0)
-    agree(told(record, "mesh"), computed("truth", path, STIFFNESS / UNITS.stiffness, UNITS).values)
+    assert_alike(told(record, "mesh"), computed("truth", path, STIFFNESS / UNITS.stiffness, UNITS).values)
     assert record["input"]["mesh"] == str(MESH)
 
 
 def test_the_picture_shows_the_jumps_of_the_given_profile():
-    from fem_adhesion.assess import figure
-
     found = assess(Contact(**SILICA, profile=profiles.Power(3.0), stiffness=STIFFNESS))
     assert found.best.model == "given profile"
     (axes,) = figure.draw(found).axes
@@ -102,10 +88,7 @@ def test_the_picture_shows_the_jumps_of_the_given_profile():
 
 def test_the_spread_of_a_radius_keeps_the_length_of_the_tip(tmp_path):
     """The cone's length stays 30 nm while the radius and the unit of length vary: a difference of two curves."""
-    out = tmp_path / "a.json"
-    given = [*OPTIONS[2:-2], "--profile", "hyperboloid:30nm", "--json", str(out)]
-    assert cli.main(["assess", "--radius", "100+-10nm", *given]) == 0
-    spread = json.loads(out.read_text())["spreads"]
+    spread = Said(f"{LINE} --radius 100+-10nm --profile hyperboloid:30nm", tmp_path).record["spreads"]
     forces = []
     for R in (97.5e-9, 102.5e-9):
         units = Units(R, UNITS.modulus, 0.1, 0.3e-9)
@@ -131,4 +114,4 @@ def test_the_spread_of_a_radius_keeps_the_length_of_the_tip(tmp_path):
     ],
 )
 def test_what_does_not_go_with_a_shape_is_refused_in_a_line(more, words, tmp_path, refused):
-    refused("assess", *OPTIONS, more.format(table=table(tmp_path)), words=words)
+    refused("assess", LINE, more.format(table=table(tmp_path)), words=words)

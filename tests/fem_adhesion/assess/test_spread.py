@@ -1,13 +1,12 @@
 """What uncertain inputs leave of a contact's numbers, and the atlas that the numbers are read from."""
 
-import json
 import math
 
 import numpy as np
 import pytest
+from assessed import LINE, Said
 
 import halfspace
-from fem_adhesion import cli
 from fem_adhesion.assess import study
 from fem_adhesion.assess.predictions import QUANTITIES, Quantity, computed, on_atlas
 from fem_adhesion.assess.spread import Spread, spreads
@@ -68,9 +67,8 @@ def test_a_spread_that_cannot_be_is_refused(text, message):
 
 
 def test_other_commands_refuse_a_standard_deviation(refused):
-    given = ["--radius", "100+-20nm", "--modulus", "70GPa", "--poisson", "0.17", "--work-of-adhesion", "0.1J/m^2"]
     words = "a value without a standard deviation, which assess alone takes"
-    refused("curve", *given, "--spacing", "0.3nm", "--csv", "-", words=words)
+    refused(f"curve {LINE} --radius 100+-20nm --csv -", words=words)
 
 
 def test_the_first_order_is_the_exact_derivative():
@@ -198,16 +196,16 @@ def test_no_rounding_is_taken_for_a_turn_of_the_base(stiffness):
     assert found.agrees(Estimate(1.0 - on.approach, on.approach_error))
 
 
-def test_the_command_tells_value_spread_and_shares(tmp_path, capsys):
-    words = ["--radius", "20±2um", "--modulus", "1+-0.1GPa", "--poisson", "0.4", "--work-of-adhesion", "0.05J/m^2"]
-    assert cli.main(["assess", *words, "--spacing", "0.3nm", "--json", str(tmp_path / "a.json")]) == 0
-    spread = json.loads((tmp_path / "a.json").read_text())["spreads"]["quantities"]["pull_off_force"]
+def test_the_command_tells_value_spread_and_shares(tmp_path):
+    line = "--radius 20±2um --modulus 1+-0.1GPa --poisson 0.4 --work-of-adhesion 0.05J/m^2 --spacing 0.3nm"
+    said = Said(line, tmp_path)
+    spread = said.record["spreads"]["quantities"]["pull_off_force"]
     contact = Contact(20e-6, 1e9, 0.4, 0.05, 0.3e-9)
     force = -atlas.pull_off(contact.units.tabor).load * contact.units.load
     assert contact.units.modulus == contact_modulus(1e9, 0.4)
     assert spread["value"] == pytest.approx(force, rel=1e-9)
     assert spread["deviation"] == pytest.approx(force / 10, rel=0.01)
     assert spread["shares"]["radius"] > 0.99
-    text = " ".join(capsys.readouterr().out.split())
+    text = " ".join(said.text.split())
     assert f"{force * 1e6:.2f} +- {force * 1e5:.2f} µN" in text
     assert "The half-space is read from halfspace.atlas" in text
