@@ -7,7 +7,6 @@ from whole_runs import ROOT
 
 import halfspace
 from fem_adhesion import Hemisphere, Scene, convergence
-from fem_adhesion.assess import figure
 from fem_adhesion.assess.predictions import Quantity, computed
 from fem_adhesion.assess.study import assess
 from fem_adhesion.common.contact import Contact
@@ -71,19 +70,6 @@ def test_the_mesh_of_a_hemisphere_is_the_hemisphere(tmp_path):
     path = convergence.trace(Scene(UNITS.tabor, body), rtol=1e-4, to_load=2.0)
     assert_alike(told(record, "mesh"), computed("truth", path, STIFFNESS / UNITS.stiffness, UNITS).values)
     assert record["input"]["mesh"] == str(MESH)
-
-
-def test_the_picture_shows_the_jumps_of_the_given_profile():
-    found = assess(Contact(**SILICA, profile=profiles.Power(3.0), stiffness=STIFFNESS))
-    assert found.best.model == "given profile"
-    (axes,) = figure.draw(found).axes
-    lines = {line.get_label(): line.get_ydata() for line in axes.lines}
-    deepest = float(np.nanmin(lines["given profile"]))
-    assert deepest == pytest.approx(-1e9 * found.best.values["pull_off_force"].value, rel=1e-6)
-    assert axes.get_ylim()[0] < deepest
-    on, off = (text for text in axes.texts if text.arrow_patch)
-    for arrow, name in ((on, "jump_on_separation"), (off, "jump_off_separation")):
-        assert arrow.xyann[0] == pytest.approx(1e9 * found.best.values[name].value)
 
 
 def test_the_spread_of_a_radius_keeps_the_length_of_the_tip(tmp_path):

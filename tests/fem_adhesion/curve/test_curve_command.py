@@ -10,11 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from page_tables import value_and_error
 from rich.console import Console
 from scenes import pair
 
 from fem_adhesion import Hemisphere, cli
 from fem_adhesion.common import lines as curve_lines
+from fem_adhesion.common.facts import plain
 from fem_adhesion.common.scene_options import law_of
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.curve import record as curve_record
@@ -46,12 +48,6 @@ def real():
     return study.solve(study.Question(Scene(UNITS.tabor), rtol=1e-4, units=UNITS, stiffness=0.2 / UNITS.stiffness))
 
 
-def _printed(cell):
-    """Value and error of a number like 1.234(5)."""
-    value, last = re.fullmatch(r"(-?[\d.]+)\((\d+)\)", cell).groups()
-    return float(value), int(last) * 10.0 ** -len(value.partition(".")[2])
-
-
 def _rows(curves):
     """State, solver and numbers of each row; the table names the solver where there are two."""
     states, *others = (column.cells for column in curve_terminal.table(curves).columns)
@@ -77,7 +73,7 @@ def test_the_table_has_the_events_of_both_solvers(both):
                 elif (name, quantity) == ("zero_load", "load"):
                     assert cell == "0"
                 else:
-                    shown, bound = _printed(cell)
+                    shown, bound = value_and_error(cell)
                     assert abs(shown - value) <= bound
                     assert error <= bound * (1 + 1e-9)
 
@@ -85,11 +81,11 @@ def test_the_table_has_the_events_of_both_solvers(both):
 def test_table_and_notes_have_landings_and_losses(both):
     rows = {row[0]: row for row in _rows(both)}
     for device, cycle in (("fixed grips", both.grips), ("apparatus", both.apparatus)):
-        shown, bound = _printed(rows[f"jump on lands, {device}"][3])
+        shown, bound = value_and_error(rows[f"jump on lands, {device}"][3])
         assert abs(shown - cycle.jump_on.landing.load) <= bound
     for device, cycle in (("fixed grips", both.grips), ("k = 1 R dgamma/eps", both.apparatus)):
         lost = next(line for line in curve_terminal.notes(both) if device in line)
-        shown, bound = _printed(lost.split()[-4])
+        shown, bound = value_and_error(lost.split()[-4])
         assert abs(shown - cycle.energy_lost.value) <= bound
 
 
@@ -158,7 +154,7 @@ def test_how_far_folds_are_is_said_and_doubt_disagrees_not(both, margin, jumps, 
     }
     assert notes[0].startswith(first[jumps])
     assert record["finite elements"]["jumps"] is jumps
-    assert record["finite elements"]["margin"] == {"value": margin.value, "error": margin.error}
+    assert record["finite elements"]["margin"] == vars(margin)
     assert record["half-space"]["margin"] is None
     verdicts = {row.verdict for row in crosscheck._compare_events(hs, path, 1e-2) if "jump" in row.quantity}
     assert verdicts == {{True: "agree", None: "inconclusive", False: "disagree"}[jumps]}
@@ -166,20 +162,13 @@ def test_how_far_folds_are_is_said_and_doubt_disagrees_not(both, margin, jumps, 
 
 def test_a_material_gives_si(real):
     table = curve_terminal.table(real)
-    assert [column.header.split("\n") for column in table.columns[-4:]] == [
-        ["approach", "nm"],
-        ["load", "nN"],
-        ["central gap", "nm"],
-        ["contact radius", "nm"],
-    ]
+    headers = ["approach\nnm", "load\nnN", "central gap\nnm", "contact radius\nnm"]
+    assert [column.header for column in table.columns[-4:]] == headers
     pull_off, event = next(row for row in _rows(real) if row[0] == "pull-off"), real.path.event("pull_off")
     beta = (1e-14 * 0.05 / 1.1e9) ** (1 / 3) * 1e9
-    for cell, value in zip(
-        pull_off[2:],
-        (event.approach * 0.3, event.load * 5, event.central_gap * 0.3, event.contact_radius * beta),
-        strict=True,
-    ):
-        shown, bound = _printed(cell)
+    wanted = event.approach * 0.3, event.load * 5, event.central_gap * 0.3, event.contact_radius * beta
+    for cell, value in zip(pull_off[2:], wanted, strict=True):
+        shown, bound = value_and_error(cell)
         assert abs(shown - value) <= bound
     assert f"Hamaker constant {16 * np.pi * 0.05 * 0.09e-18 * 1e21:.4g} zJ" in "".join(table.title)
     assert "k = 200 mN/m" in "".join(curve_terminal.notes(real))
@@ -229,26 +218,21 @@ def test_each_key_of_the_json_holds_what_it_says(both, real):
     record = json.loads(json.dumps(curve_record.record(both), allow_nan=False))
     for solver, path in both.paths.items():
         found = record["solutions"][solver]
-        assert found["curve"]["arclength"] == path.arclength.tolist()
-        assert found["curve"]["stable_under_fixed_grips"] == path.stable.tolist()
-        assert found["curve"]["stable_under_dead_load"] == path.stable_under_dead_load.tolist()
-        for quantity in NUMBERS:
-            values = [np.nan if value is None else value for value in found["curve"][quantity]]
-            np.testing.assert_array_equal(values, getattr(path, quantity))
+        curve = {quantity: getattr(path, quantity) for quantity in ("arclength", *NUMBERS)}
+        curve |= {"stable_under_fixed_grips": path.stable, "stable_under_dead_load": path.stable_under_dead_load}
+        for key, values in curve.items():
+            assert found["curve"][key] == plain(values)
         for name, event in path.events.items():
-            for key in (*NUMBERS, *(f"{quantity}_error" for quantity in NUMBERS)):
-                value = found["events"][name][key]
-                assert value == getattr(event, key) or (value is None and np.isnan(getattr(event, key)))
-        assert found["energy_released"] == {"value": path.energy.value, "error": path.energy.error}
+            assert found["events"][name] == plain(event.numbers) | {"missed": []}
+        assert found["energy_released"] == vars(path.energy)
         assert (found["unknowns"], found["seconds"]) == (path.unknowns, path.seconds)
     for device, cycle in (("fixed_grips", both.grips), ("apparatus", both.apparatus)):
         for name in ("jump_on", "jump_off"):
             shown, jump = record["jumps"][device][name], getattr(cycle, name)
             assert shown["take_off"]["load"] == jump.take_off.load
             assert shown["landing"]["load"] == jump.landing.load != jump.take_off.load
-            assert shown["energy"] == {"value": jump.energy.value, "error": jump.energy.error}
-        lost = record["jumps"][device]["energy_lost"]
-        assert lost == {"value": cycle.energy_lost.value, "error": cycle.energy_lost.error}
+            assert shown["energy"] == vars(jump.energy)
+        assert record["jumps"][device]["energy_lost"] == vars(cycle.energy_lost)
     stiffnesses = [record["jumps"][device]["stiffness"] for device in ("fixed_grips", "apparatus")]
     assert stiffnesses == [None, 1.0]
     assert (record["si"], record["units"]["load"], record["scene"]["tabor"]) == (None, "R dgamma", 2.0)
