@@ -37,9 +37,9 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.crosscheck.comparison import overall_verdict
     from fem_adhesion.curve import solve
     from fem_adhesion.report import walk
-    from fem_adhesion.report.page import Contents, fit_section, page, section_of
+    from fem_adhesion.report.page import fit_section, page, section_of
     from fem_adhesion.scene import Scene
-    from halfspace.errors import tried
+    from halfspace.errors import Unsolved, tried
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
@@ -53,15 +53,14 @@ def run(options: argparse.Namespace) -> int:
     with written_aside(options.html) as file, progress_bar() as step:
         cases = crosscheck.run(scenes, rtol=options.rtol, progress=step)
 
-        def walked() -> Contents:
-            curves = solve.solve(question, step)
-            return Contents(cases, curves, walk.walk(curves, progress=step), directories, options.fit)
+        def walked() -> walk.Walk:
+            return walk.walk(solve.solve(question, step), progress=step)
 
         found = tried(walked)
-        contents = found or Contents(cases, None, None, directories, options.fit, lost=found.reason)
+        lost = found.reason if isinstance(found, Unsolved) else ""
         step("page", 0, 1)
-        file.write(page(contents))
-    verdict = "failed" if contents.lost else overall_verdict(cases)
+        file.write(page(cases, found or None, directories, options.fit, lost))
+    verdict = "failed" if lost else overall_verdict(cases)
     print(f"verdict: {verdict}")
     return AGREE if verdict == "agree" else DISAGREE
 

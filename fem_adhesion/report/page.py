@@ -6,10 +6,8 @@ import math
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import final
 from xml.etree import ElementTree
 
 from matplotlib import rc_context
@@ -39,42 +37,30 @@ WORDS = {
 """What each verdict is called, worst first."""
 
 
-@final
-@dataclass(frozen=True)
-class Contents:
-    """What goes into a report: the cross-check, one curve, by both solvers and state by state, and other results.
+def page(
+    cases: Sequence[Case], walk: Walk | None, directories: Mapping[str, Path], fit: Path | None = None, lost: str = ""
+) -> str:
+    """The page as HTML, or InputError if a directory does not hold what its command writes.
 
-    Those are in directories by their commands' names, and `fit` is the record of a fit; `lost` says why there is no
-    curve, or is empty.
+    It shows the cross-check, a walk along a curve, with the curve itself, and results of other commands: directories by
+    the commands' names, and the record of a fit. Where there is no walk, `lost` says why.
     """
-
-    cases: Sequence[Case]
-    curves: Curves | None
-    walk: Walk | None
-    directories: Mapping[str, Path]
-    fit: Path | None = None
-    lost: str = ""
-
-
-def page(contents: Contents) -> str:
-    """The page as HTML, or InputError if a directory does not hold what its command writes."""
-    cases, curves, walked = contents.cases, contents.curves, contents.walk
     verdicts = [row.verdict for case in cases for row in case.rows]
-    paths = curves.paths.values() if curves else ()
+    paths = walk.curves.paths.values() if walk else ()
     return render(
         "report/report.html.j2",
         title="Adhesive contact of a sphere: do two solvers agree?",
-        verdict="failed" if contents.lost else comparison.overall_verdict(cases),
+        verdict="failed" if lost else comparison.overall_verdict(cases),
         words=verdict_words(cases),
         cases=cases,
         counts={verdict: verdicts.count(verdict) for verdict in WORDS if verdict in verdicts},
-        lost=contents.lost,
-        curves=_curves_section(curves) if curves else None,
-        walk=walk_data(walked, curves) if walked and curves else None,
-        walk_words=walk_words(walked) if walked else (),
+        lost=lost,
+        curves=_curves_section(walk.curves) if walk else None,
+        walk=walk_data(walk) if walk else None,
+        walk_words=walk_words(walk) if walk else (),
         has_unstable=any((smooth(path).kind == UNSTABLE).any() for path in paths),
         levels=crosscheck_section(cases),
-        others=[*(section_of(name, contents.directories.get(name)) for name in SOURCES), fit_section(contents.fit)],
+        others=[*(section_of(name, directories.get(name)) for name in SOURCES), fit_section(fit)],
         settings=settings_section(cases, machine()),
         script=template_text("report", "walk.js"),
     )

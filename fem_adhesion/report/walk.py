@@ -51,9 +51,11 @@ class Station(Valued):
 class Walk(Valued):
     """States along the curve of a scene by finite elements, in order.
 
-    Radii (n,) of the profiles and places (m,) of the points on the lines inside the body are in beta.
+    Radii (n,) of the profiles and places (m,) of the points on the lines inside the body are in beta. The curves are by
+    finite elements and by the half-space.
     """
 
+    curves: Curves
     radii: Array
     places: Array
     stations: tuple[Station, ...]
@@ -73,7 +75,7 @@ def walk(curves: Curves, *, states: int | None = None, progress: Progress = unhe
     for number, state in enumerate(states_along(scene, path, points=states, how=SEEN)):
         progress("states along the curve", number, total)
         stations.append(_station(state, radii, places))
-    return Walk(radii, places, tuple(stations))
+    return Walk(curves, radii, places, tuple(stations))
 
 
 def _station(state: State, radii: Array, places: Array) -> Station:
@@ -114,17 +116,17 @@ def walk_words(walk: Walk) -> list[str]:
     return words + [f"At {missing} of them the half-space has no such state."] * bool(missing)
 
 
-def walk_data(walk: Walk, curves: Curves) -> str:
+def walk_data(walk: Walk) -> str:
     """The walk, and the curve by both solvers, as JSON that is safe inside a script element."""
     drawn = {
         "radii": walk.radii,
         "places": walk.places,
         "curves": [
             {"approach": line.approach, "load": line.load, "unstable": (line.kind == UNSTABLE).tolist()}
-            for line in map(smooth, curves.paths.values())
+            for line in map(smooth, walk.curves.paths.values())
         ],
         "stations": [asdict(station) | {"name": station.name.replace("_", " ")} for station in walk.stations],
     }
     rounded = json.loads(json.dumps(plain(drawn)), parse_float=lambda text: float(f"{float(text):.5g}"))
-    data = {"tabor": curves.question.scene.tabor, "depths": LINES, "between": BETWEEN, **rounded}
+    data = {"tabor": walk.curves.question.scene.tabor, "depths": LINES, "between": BETWEEN, **rounded}
     return json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")

@@ -14,7 +14,7 @@ from page_tables import data_of
 from fem_adhesion import Scene
 from fem_adhesion.common.page import Figure, Section, write_page
 from fem_adhesion.curve.solve import Question, solve
-from fem_adhesion.report.page import Contents, page
+from fem_adhesion.report.page import page
 from fem_adhesion.report.walk import walk
 
 pytestmark = chromium.needed
@@ -28,10 +28,8 @@ def report(tmp_path_factory):
     scaled = [
         replace(one, pressure=one.pressure * [[1.0], [0.5]], gap=one.gap * [[1.0], [0.7]]) for one in walked.stations
     ]
-    walked = replace(walked, stations=tuple(scaled))
-    contents = Contents(ENDINGS["agree"], curves, walked, {})
     file = tmp_path_factory.mktemp("report") / "report.html"
-    file.write_text(page(contents))
+    file.write_text(page(ENDINGS["agree"], replace(walked, stations=tuple(scaled)), {}))
     return file
 
 

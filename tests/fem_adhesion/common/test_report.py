@@ -17,21 +17,20 @@ from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import Beside, state_at
 from fem_adhesion.report import page as report_page
-from fem_adhesion.report.page import MOST_ROWS, WORDS, Contents, cell, page, read_table
+from fem_adhesion.report.page import MOST_ROWS, WORDS, cell, page, read_table
 from fem_adhesion.report.walk import SEEN, _station, walk
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES
 
 
 @pytest.fixture(scope="module")
-def contents():
-    curves = solve(Question(Scene(2.0), "both", 1e-3))
-    return Contents(ENDINGS["agree"], curves, walk(curves, states=20), {})
+def walked():
+    return walk(solve(Question(Scene(2.0), "both", 1e-3)), states=20)
 
 
 @pytest.fixture(scope="module")
-def html(contents):
-    return page(contents)
+def html(walked):
+    return page(ENDINGS["agree"], walked, {})
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -65,9 +64,9 @@ def speed_left(directory, picture):
         (directory / f"{stem}.csv").write_text("a\n1\n")
 
 
-def test_a_picture_enters_the_page_as_an_image(contents, tmp_path):
+def test_a_picture_enters_the_page_as_an_image(walked, tmp_path):
     speed_left(tmp_path, HOSTILE)
-    html = page(replace(contents, directories={"speed": tmp_path}))
+    html = page(ENDINGS["agree"], walked, {"speed": tmp_path})
     (shown,) = re.findall(r'<img src="data:image/svg\+xml;base64,([^"]*)" alt="see &#34;this&#34; &amp; that">', html)
     assert b64decode(shown) == HOSTILE
     assert "alert" not in html
@@ -98,9 +97,9 @@ def test_sections_not_computed_say_how_to(html):
         assert f"<code>{line}</code>, then this with <code>--{name} {name}</code>" in html
 
 
-def test_the_stations_of_a_walk_balance(contents):
+def test_the_stations_of_a_walk_balance(walked):
     """Both solvers' profiles agree, and the surface rises by what closes the gap: H = -alpha* + mu u^2/2 - rise."""
-    walked, mu = contents.walk, contents.curves.question.scene.tabor
+    mu = walked.curves.question.scene.tabor
     for station in walked.stations[::3]:
         elements, half_space = station.pressure
         assert elements == pytest.approx(half_space, abs=2e-2)
@@ -133,17 +132,17 @@ def test_what_cannot_be_read_is_refused_before_any_work(option, name, content, w
     assert error.endswith("; run its command again\n") or content is None
 
 
-def test_the_page_has_what_other_commands_left(contents, tmp_path, monkeypatch, capsys):
+def test_the_page_has_what_other_commands_left(walked, tmp_path, monkeypatch, capsys):
     """Solved before; `test_readme` has it solve for itself, with all that the other commands left."""
     hard = tmp_path / "hard"
     hard.mkdir()
     (hard / "hard.csv").write_text("name,outcome\ntabor <50>,converged\n")
     (hard / "locking.csv").write_text("poisson,error\n0.3,1e-5\n")
     file = tmp_path / "report.html"
-    asked = solved_before(monkeypatch, contents, contents.cases)
+    asked = solved_before(monkeypatch, walked, ENDINGS["agree"])
     options = ["--tabor", "1", "3", "--rtol", "1e-2", "--walk", "2", "--hard", str(hard)]
     assert cli.main(["report", "--html", str(file), *options]) == 0
-    assert asked == [([Scene(1.0), Scene(3.0)], 1e-2), Question(Scene(2.0), "both", 1e-2), contents.curves]
+    assert asked == [([Scene(1.0), Scene(3.0)], 1e-2), Question(Scene(2.0), "both", 1e-2), walked.curves]
     assert "verdict: agree" in capsys.readouterr().out
     html = file.read_text()
     assert "<td>tabor &lt;50&gt;</td>" in html
@@ -153,7 +152,7 @@ def test_the_page_has_what_other_commands_left(contents, tmp_path, monkeypatch, 
     assert f"<p>To repeat: <code>{line}</code></p>" in html
 
 
-def solved_before(monkeypatch, contents, cases):
+def solved_before(monkeypatch, walked, cases):
     """Let the command find what was solved before, and keep what it asks for."""
     asked = []
 
@@ -162,8 +161,8 @@ def solved_before(monkeypatch, contents, cases):
         return found
 
     monkeypatch.setattr(beside, "run", lambda scenes, rtol, **_: told((scenes, rtol), cases))
-    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda question, _: told(question, contents.curves))
-    monkeypatch.setattr("fem_adhesion.report.walk.walk", lambda curves, **_: told(curves, contents.walk))
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda question, _: told(question, walked.curves))
+    monkeypatch.setattr("fem_adhesion.report.walk.walk", lambda curves, **_: told(curves, walked))
     return asked
 
 
@@ -177,8 +176,8 @@ def words_of(html):
 
 
 @pytest.mark.parametrize("verdict", ENDINGS)
-def test_page_and_exit_code_tell_the_verdict_of_the_cases(contents, verdict, tmp_path, monkeypatch, capsys):
-    solved_before(monkeypatch, contents, ENDINGS[verdict])
+def test_page_and_exit_code_tell_the_verdict_of_the_cases(walked, verdict, tmp_path, monkeypatch, capsys):
+    solved_before(monkeypatch, walked, ENDINGS[verdict])
     code = cli.main(["report", "--html", str(tmp_path / "a.html"), "--tabor", "2"])
     assert code == (0 if verdict == "agree" else 1)
     assert capsys.readouterr().out == f"verdict: {verdict}\nwritten: {tmp_path / 'a.html'}\n"
@@ -211,27 +210,25 @@ def test_a_curve_that_cannot_be_solved_is_said_to_be_missing(tmp_path, monkeypat
     assert 'id="walk-data"' not in html
 
 
-def test_what_is_said_of_the_states_is_counted(contents):
-    walked = contents.walk
+def test_what_is_said_of_the_states_is_counted(walked, html):
     unstable = sum(not station.stable for station in walked.stations)
     total = len(walked.stations)
     assert 0 < unstable < total
-    said = words_of(page(contents))
+    said = words_of(html)
     assert f"Of {total} states {unstable} are unstable under fixed grips: hollow points." in said
     assert "unstable branch" in said
     assert "the half-space has no such state" not in said
     turned = replace(walked, stations=tuple(replace(one, stable=not one.stable) for one in walked.stations))
-    assert f"Of {total} states {total - unstable} are unstable" in words_of(page(replace(contents, walk=turned)))
+    assert f"Of {total} states {total - unstable} are unstable" in words_of(page(ENDINGS["agree"], turned, {}))
     none = np.full_like(walked.radii, np.nan)
     alone = [replace(one, pressure=np.array([one.pressure[0], none])) for one in walked.stations[:3]]
     missing = replace(walked, stations=(*alone, *walked.stations[3:]))
-    assert "At 3 of them the half-space has no such state." in words_of(page(replace(contents, walk=missing)))
+    assert "At 3 of them the half-space has no such state." in words_of(page(ENDINGS["agree"], missing, {}))
 
 
 def test_a_curve_without_jumps_is_not_said_to_have_any():
-    curves = solve(Question(Scene(0.5), "both", 1e-2))
-    walked = walk(curves, states=3)
-    html = page(Contents(ENDINGS["agree"], curves, walked, {}))
+    walked = walk(solve(Question(Scene(0.5), "both", 1e-2)), states=3)
+    html = page(ENDINGS["agree"], walked, {})
     said = words_of(html)
     assert f"All {len(walked.stations)} states are stable under fixed grips." in said
     assert "unstable branch" not in said
@@ -256,11 +253,11 @@ def test_the_caption_names_what_the_figure_shows(html):
 
 
 @pytest.mark.parametrize(("outcomes", "warning"), [("converged refused", ""), ("converged wrong wrong", "2 wrong.")])
-def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, contents, tmp_path):
+def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, walked, tmp_path):
     lines = [f"case {k},{outcome}" for k, outcome in enumerate(outcomes.split())]
     (tmp_path / "hard.csv").write_text("\n".join(["name,outcome", *lines, ""]))
     (tmp_path / "locking.csv").write_text("poisson,error\n0.3,1e-5\n")
-    html = page(replace(contents, directories={"hard": tmp_path}))
+    html = page(ENDINGS["agree"], walked, {"hard": tmp_path})
     assert ("Hard cases</a> (with failures)" in html) == bool(warning)
     assert ('<p class="warning">' in html) == bool(warning)
     assert warning in html
@@ -269,9 +266,8 @@ def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, content
 # --- the walk ---
 
 
-def test_each_number_of_a_station_stands_under_its_name(contents, html):
-    walked = contents.walk
-    shown, path = data_of(html)["stations"], contents.curves.path
+def test_each_number_of_a_station_stands_under_its_name(walked, html):
+    shown, path = data_of(html)["stations"], walked.curves.path
     assert {one["name"] for one in shown} == {"", *(name.replace("_", " ") for name in path.events)}
     stable = dict(zip(path.arclength.tolist(), path.stable.tolist(), strict=True))
     for one, station in zip(shown, walked.stations, strict=True):
@@ -287,9 +283,8 @@ def test_each_number_of_a_station_stands_under_its_name(contents, html):
             assert walked.radii[inside].max() == pytest.approx(station.contact_radius, abs=2 * walked.radii[1])
 
 
-def test_profiles_are_of_elements_then_of_the_half_space(contents, monkeypatch):
-    path = contents.curves.path
-    found = path.stages[-1]["pull_off"]
+def test_profiles_are_of_elements_then_of_the_half_space(walked, monkeypatch):
+    found = walked.curves.path.stages[-1]["pull_off"]
     state = state_at(Scene(2.0), found.problem, found.point, how=SEEN)
     other = Beside(np.full(state.surface.radii.size, 7.0), np.full(state.surface.radii.size, 9.0), np.zeros(4))
     monkeypatch.setattr("fem_adhesion.report.walk.half_space_beside", lambda _: other)
