@@ -8,7 +8,7 @@ over `SEGMENT` they leave the circle by less than 2e-4 of its radius, so that no
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 
@@ -29,45 +29,31 @@ MOST_CUTS = 12  # into which a side of an element is ever cut
 SAME = 1e-3  # of the shortest distance between two nodes of a cell, within which points are one
 
 
-@dataclass(frozen=True)
-class Lattice:
-    """A reference element, a triangle or square, cut into n by n cells of the second order."""
+def lattice(cuts: int, *, triangular: bool) -> Basis:
+    """A reference element, a triangle or square, cut into n by n cells of the second order.
 
-    cuts: int
-    triangular: bool
-
-    @cached_property
-    def basis(self) -> Basis:
-        """The cells as a mesh of scikit-fem, whose elements number their nodes as VTK does."""
-        sides = np.linspace(0, 1, self.cuts + 1)
-        if not self.triangular:
-            return Basis(MeshQuad.init_tensor(sides, sides), ElementQuad2())
-        square = MeshTri.init_tensor(sides, sides).scaled((-1, 1)).translated((1, 0))
-        below = square.p[:, square.t].mean(axis=1).sum(axis=0) < 1
-        return Basis(square.restrict(np.flatnonzero(below)), ElementTriP2())
-
-    @property
-    def places(self) -> Array:
-        """Nodes (2, k) in the reference element."""
-        return np.asarray(self.basis.doflocs)
-
-    @property
-    def cells(self) -> Index:
-        """Nodes of each cell, (cells, 6 or 9), in VTK's order."""
-        return np.asarray(self.basis.element_dofs.T)
+    It is a mesh of scikit-fem, whose elements number their nodes as VTK does: ``doflocs``, (2, k), are their places in
+    the reference element, ``element_dofs``, (6 or 9, cells), those of each cell.
+    """
+    sides = np.linspace(0, 1, cuts + 1)
+    if not triangular:
+        return Basis(MeshQuad.init_tensor(sides, sides), ElementQuad2())
+    square = MeshTri.init_tensor(sides, sides).scaled((-1, 1)).translated((1, 0))
+    below = square.p[:, square.t].mean(axis=1).sum(axis=0) < 1
+    return Basis(square.restrict(np.flatnonzero(below)), ElementTriP2())
 
 
 @dataclass(frozen=True)
 class Cut:
-    """A body's elements cut into cells of the second order, each by a lattice."""
+    """A body's elements cut into cells of the second order, each by a `lattice`."""
 
     space: Space
-    lattice: Lattice
+    lattice: Basis
 
     @cached_property
     def numbers(self) -> Index:
         """Number of each element's nodes among those of the whole body, (elements, k)."""
-        r, z = positions(self.space, self.lattice.places)
+        r, z = positions(self.space, self.lattice.doflocs)
         region = np.broadcast_to(np.abs(z).max() * self.regions[:, None], r.shape)  # they do not share nodes
         points = np.stack([r.ravel(), z.ravel(), region.ravel()], axis=1)
         pairs = KDTree(points).query_pairs(SAME * self._shortest(r, z), output_type="ndarray")
@@ -97,23 +83,23 @@ class Cut:
     @property
     def cells(self) -> Index:
         """Nodes of each cell, (cells, 6 or 9), in VTK's order."""
-        return np.concatenate(list(self.numbers[:, self.lattice.cells]))
+        return np.concatenate(list(self.numbers[:, self.lattice.element_dofs.T]))
 
     @property
     def points(self) -> Array:
         """Radius and height of the nodes in beta, (2, nodes)."""
-        return self._merged(positions(self.space, self.lattice.places))
+        return self._merged(positions(self.space, self.lattice.doflocs))
 
     def values(self, coefficients: Array) -> Array:
         """Values (m, nodes) of fields given by the coefficients (m, functions) of the space."""
-        return self._merged(sampled(self.space, coefficients, self.lattice.places))
+        return self._merged(sampled(self.space, coefficients, self.lattice.doflocs))
 
     def _merged(self, values: Array) -> Array:
         return np.asarray(values.reshape(len(values), -1)[:, self.firsts])
 
     def _shortest(self, r: Array, z: Array) -> float:
-        cells = self.lattice.cells
-        sides = [np.hypot(*(x[:, cells[:, 0]] - x[:, cells[:, k]] for x in (r, z))).min() for k in (1, 2)]
+        cells = self.lattice.element_dofs
+        sides = [np.hypot(*(x[:, cells[0]] - x[:, cells[k]] for x in (r, z))).min() for k in (1, 2)]
         return float(min(sides)) / 2
 
 
@@ -123,33 +109,34 @@ def cut_for(space: Space, fields: Array, tolerance: float) -> Cut:
     Coefficients (m, functions) of the fields are taken together, as components of a vector. The tolerance is the
     largest error between the nodes, relative to the largest absolute value; for the shape, to the body's size.
     """
-    lattice = Lattice(1, space.element.refdom is RefTri)
-    while (error := _shown_error(space, fields, lattice)) > tolerance and lattice.cuts < MOST_CUTS:
-        wanted = int(np.ceil(lattice.cuts * np.cbrt(error / tolerance)))  # the error falls as their third power
-        lattice = replace(lattice, cuts=min(max(wanted, lattice.cuts + 1), MOST_CUTS))
-    return Cut(space, lattice)
+    triangular, cuts = space.element.refdom is RefTri, 1
+    cells = lattice(cuts, triangular=triangular)
+    while (error := _shown_error(space, fields, cells)) > tolerance and cuts < MOST_CUTS:
+        wanted = int(np.ceil(cuts * np.cbrt(error / tolerance)))  # the error falls as their third power
+        cuts = min(max(wanted, cuts + 1), MOST_CUTS)
+        cells = lattice(cuts, triangular=triangular)
+    return Cut(space, cells)
 
 
-def _shown_error(space: Space, fields: Array, lattice: Lattice) -> float:
+def _shown_error(space: Space, fields: Array, cells: Basis) -> float:
     """Error of the cells' polynomials at points half-way between their nodes."""
-    places, shapes = _between(lattice)
+    places, shapes = _between(cells)
     errors = []
     for values, wanted in (
-        (sampled(space, fields, lattice.places), sampled(space, fields, places)),
-        (positions(space, lattice.places), positions(space, places)),
+        (sampled(space, fields, cells.doflocs), sampled(space, fields, places)),
+        (positions(space, cells.doflocs), positions(space, places)),
     ):
-        shown = np.einsum("fesn,cn->fesc", values[:, :, lattice.cells], shapes).reshape(wanted.shape)
+        shown = np.einsum("fesn,cn->fesc", values[:, :, cells.element_dofs.T], shapes).reshape(wanted.shape)
         errors.append(np.abs(shown - wanted).max() / np.abs(wanted).max())
     return float(max(errors))
 
 
-def _between(lattice: Lattice) -> tuple[Array, Array]:
+def _between(cells: Basis) -> tuple[Array, Array]:
     """Points of the reference element half-way between nodes of the cells, cell by cell, and shapes (c, n) there."""
     X = np.array([*product((0.25, 0.5, 0.75), repeat=2), (0.0, 0.25), (0.0, 0.75), (0.25, 0.0), (0.75, 0.0)]).T
-    X = X[:, X.sum(axis=0) <= 1] if lattice.triangular else X
-    basis = lattice.basis
-    shapes = np.stack([basis.elem.lbasis(X, i)[0] for i in range(basis.Nbfun)], axis=1)
-    return basis.mapping.F(X).reshape(2, -1), shapes
+    X = X[:, X.sum(axis=0) <= 1] if cells.elem.refdom is RefTri else X
+    shapes = np.stack([cells.elem.lbasis(X, i)[0] for i in range(cells.Nbfun)], axis=1)
+    return cells.mapping.F(X).reshape(2, -1), shapes
 
 
 SEGMENT = 15.0  # largest angle of a cell in degrees

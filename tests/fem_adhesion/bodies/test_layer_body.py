@@ -19,7 +19,7 @@ from fem_adhesion.discretise import discretise, sized_body
 from fem_adhesion.materials import LinearElastic
 from fem_adhesion.paraview import picture
 from fem_adhesion.paraview.arrays import inside
-from fem_adhesion.paraview.cells import Cut, Lattice
+from fem_adhesion.paraview.cells import Cut, lattice
 from halfspace import Stratum, Substrate
 from halfspace.elastic import grid
 from halfspace.elastic.layered import images_of, layered_panels
@@ -183,7 +183,7 @@ def inside_coated():
     """State of a coated half-space at zero load, and a cut through it."""
     scene, event = Scene(1.0, STIFF), traced(Scene(1.0, STIFF), 1e-4).stages[-1]["zero_load"]
     state = fields.state_at(scene, event.problem, event.point)
-    return state, Cut(state.space, Lattice(1, triangular=False))
+    return state, Cut(state.space, lattice(1, triangular=False))
 
 
 def test_stresses_jump_at_an_interface_where_they_must(inside_coated):

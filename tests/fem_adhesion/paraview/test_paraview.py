@@ -20,7 +20,7 @@ from fem_adhesion.elasticity.stress import sampled
 from fem_adhesion.fields import states_along
 from fem_adhesion.paraview import cells
 from fem_adhesion.paraview.arrays import MEANINGS, UNITS, inside, unit_of
-from fem_adhesion.paraview.cells import Lattice, cut_for, revolved
+from fem_adhesion.paraview.cells import cut_for, lattice, revolved
 from fem_adhesion.paraview.write import TOLERANCE, write_states
 from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import Units
@@ -136,9 +136,9 @@ def test_the_nodes_of_a_cell_are_where_vtk_has_them(triangular, kind):
     """VTK's own shape functions are one at the places that the nodes are given, each at its own."""
     cell = {28: vtk.vtkBiQuadraticQuad, 22: vtk.vtkQuadraticTriangle}[kind]()
     wanted = np.reshape([cell.GetParametricCoords()[k] for k in range(3 * cell.GetNumberOfPoints())], (-1, 3))
-    lattice = Lattice(2, triangular=triangular)
-    for nodes in lattice.cells:
-        places = lattice.places[:, nodes]
+    cut = lattice(2, triangular=triangular)
+    for nodes in cut.element_dofs.T:
+        places = cut.doflocs[:, nodes]
         first, along, across = (places[:, [k]] for k in ((0, 1, 3) if not triangular else (0, 1, 2)))
         np.testing.assert_allclose(places, first + (along - first) * wanted[:, 0] + (across - first) * wanted[:, 1])
 
@@ -155,12 +155,12 @@ def test_nothing_visible_is_lost_between_the_nodes(states):
     state = states[-1]
     cut = cut_for(state.space, state.components, TOLERANCE)
     assert cells._shown_error(state.space, state.components, cut.lattice) <= TOLERANCE
-    assert cut_for(state.space, state.components, 1e-2).lattice.cuts < cut.lattice.cuts
+    assert cut_for(state.space, state.components, 1e-2).lattice.nelems < cut.lattice.nelems
     places = np.random.default_rng(0).uniform(0, 1, (2, 6))
     wanted = sampled(state.space, state.components, places)
-    lattice, m = Lattice(cut.lattice.cuts, triangular=False), cut.lattice.cuts
-    along = np.lexsort(np.round(2 * m * lattice.places[::-1]))
-    nodes = sampled(state.space, state.components, lattice.places)[..., along].reshape(2, -1, 2 * m + 1, 2 * m + 1)
+    m = round(cut.lattice.nelems**0.5)
+    along = np.lexsort(np.round(2 * m * cut.lattice.doflocs[::-1]))
+    nodes = sampled(state.space, state.components, cut.lattice.doflocs)[..., along].reshape(2, -1, 2 * m + 1, 2 * m + 1)
     shown = np.stack([_biquadratic(nodes, m, x, y) for x, y in places.T], axis=-1)
     assert np.abs(shown - wanted).max() <= 2 * TOLERANCE * np.abs(wanted).max()
 
