@@ -43,12 +43,12 @@ def unit_of(name: str) -> tuple[str, str]:
     return UNITS[name.partition("_of_half_space")[0].removesuffix("_from_stress")]
 
 
-def in_si(arrays: Mapping[str, Numbers], units: Units) -> dict[str, Numbers]:
-    """Numbers or arrays in SI, the unit at the end of their names; those without a dimension as they are."""
+def in_si(arrays: Mapping[str, Numbers], units: Units | None) -> dict[str, Numbers]:
+    """Numbers or arrays in SI, the unit at the end of their names; without a dimension or a material as they are."""
     found = {}
     for name, values in arrays.items():
         _, quantity = unit_of(name)
-        size, unit = units.si(quantity) if quantity else (1.0, "")
+        size, unit = units.si(quantity) if units and quantity else (1.0, "")
         found[f"{name}_{unit.replace('/', '_per_').replace('^', '')}" if unit else name] = values * size
     return found
 
@@ -127,7 +127,7 @@ def numbers(state: State, scale: float, units: Units | None) -> dict[str, float]
     found = {"tabor": scene.tabor, "poisson": scene.poisson}
     if scene.radius_ratio is not None:
         found["radius_ratio"] = scene.radius_ratio
-    found |= observed | (in_si(observed, units) if units else {})
+    found |= observed | in_si(observed, units)
     found |= {f"is_{name}": float(state.name == name) for name in EVENTS}
     found |= {"arclength": state.point.arclength, "stable_under_fixed_grips": float(state.stable)}
     found |= {"stable_under_dead_load": float(state.stable_under_dead_load)}

@@ -158,8 +158,8 @@ def solid_image(state: State, view: View, size: tuple[int, int]) -> Pixels:
         plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
         plotter.add_light(pyvista.Light(position=LOOK.light, light_type="camera light"))
         plotter.set_background("white")
-        _add_body(pyvista, plotter, state, view)
-        _add_surfaces(pyvista, plotter, state, view)
+        _add_body(plotter, state, view)
+        _add_surfaces(plotter, state, view)
         _look(plotter, view, size)
         plotter.enable_anti_aliasing("ssaa")
         image: Pixels = plotter.screenshot(None, return_img=True)
@@ -184,11 +184,11 @@ def require_drawing() -> Any:
     return pyvista
 
 
-def _add_body(pyvista: Any, plotter: Any, state: State, view: View) -> None:
+def _add_body(plotter: Any, state: State, view: View) -> None:
     """The cut in its true colours, and the skin lit, so that its shape is seen."""
     shown = section(state, view)
     cells = np.insert(shown.cells, 0, shown.cells.shape[1], axis=1)
-    whole = pyvista.PolyData(in_plane(*shown.points), faces=cells.ravel())
+    whole = require_pyvista().PolyData(in_plane(*shown.points), faces=cells.ravel())
     whole.point_data["stress"] = shown.stress
     plane = _in_view(whole, view)
     colours = {"scalars": "stress", "cmap": COLOURS, "clim": (-view.limit, view.limit), "show_scalar_bar": False}
@@ -197,7 +197,7 @@ def _add_body(pyvista: Any, plotter: Any, state: State, view: View) -> None:
         plotter.add_mesh(plane.rotate_z(angle), lighting=False, **colours)
         plotter.add_mesh(outline.rotate_z(angle), color=OUTLINE, line_width=2)
         for line in shown.interfaces:
-            seen = _in_view(line_through(pyvista, in_plane(*line)), view)
+            seen = _in_view(line_through(*line), view)
             plotter.add_mesh(seen.rotate_z(angle), color=OUTLINE, line_width=3, lighting=False)
     light = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "smooth_shading": True, "split_sharp_edges": True}
     plotter.add_mesh(_turned(plane), **colours, **light)
@@ -207,14 +207,14 @@ def _in_view(plane: Any, view: View) -> Any:
     return plane.clip("x", origin=(view.reach, 0, 0)).clip("-z", origin=(0, 0, -view.depth))
 
 
-def _add_surfaces(pyvista: Any, plotter: Any, state: State, view: View) -> None:
+def _add_surfaces(plotter: Any, state: State, view: View) -> None:
     """The wall, translucent, and along the cut the lines of wall, body and undeformed body."""
     shown = surfaces(state, view.reach, view.heights)
-    wall = _turned(line_through(pyvista, in_plane(*shown["wall"])))
+    wall = _turned(line_through(*shown["wall"]))
     plotter.add_mesh(wall, color="#a0a0a0", opacity=0.3, smooth_shading=True)
     for name, (colour, width) in LINES.items():
         for angle in (0.0, LOOK.open):
-            line = line_through(pyvista, in_plane(*shown[name])).rotate_z(angle)
+            line = line_through(*shown[name]).rotate_z(angle)
             plotter.add_mesh(line, lighting=False, color=colour, line_width=width)
 
 

@@ -59,7 +59,7 @@ def write_states(
     """
     if revolve is not None:
         require_angle(revolve)
-    pyvista = require_pyvista()
+    require_pyvista()
     held = list(states)
     require_same_scene(held, units)
     scale = magnification_for(held)
@@ -67,7 +67,7 @@ def write_states(
         files = list[dict[str, str]]()  # names by kind, of each state
         for number, state in enumerate(held):
             files.append({})
-            for kind, suffix, grid in _grids(pyvista, state, scale, units, revolve):
+            for kind, suffix, grid in _grids(state, scale, units, revolve):
                 _annotate(grid, numbers(state, scale, units))
                 files[-1][kind] = f"{kind}_{number:04d}.{suffix}"
                 _save(grid, aside / files[-1][kind])
@@ -99,41 +99,37 @@ def _save(grid: Any, file: Path) -> None:
     file.write_text(writer.GetOutputString(), encoding="utf-8")
 
 
-def _grids(
-    pyvista: Any, state: State, scale: float, units: Units | None, revolve: float | None
-) -> Iterator[tuple[str, str, Any]]:
+def _grids(state: State, scale: float, units: Units | None, revolve: float | None) -> Iterator[tuple[str, str, Any]]:
     """Kind, suffix and grid of each file of a state."""
     cut = cut_for(state.space, state.components, TOLERANCE)
     section = {QUADRATIC[cut.cells.shape[1]]: cut.cells}
-    yield "body", "vtu", _grid(pyvista, section, in_plane(*cut.points), inside(state, cut, scale), units, COMPONENTS)
-    yield "contact", "vtp", _surface(pyvista, state, scale, units)
+    yield "body", "vtu", _grid(section, in_plane(*cut.points), inside(state, cut, scale), units, COMPONENTS)
+    yield "contact", "vtp", _surface(state, scale, units)
     if revolve is not None:
         coarse = cut_for(state.space, state.components, SOLID_TOLERANCE)
         solid = revolved(coarse.points, coarse.cells, revolve)
         arrays = turned(inside(state, coarse, scale), solid)
-        yield "solid", "vtu", _grid(pyvista, solid.cells, solid.points, arrays, units, COMPONENTS_OF_SOLID)
+        yield "solid", "vtu", _grid(solid.cells, solid.points, arrays, units, COMPONENTS_OF_SOLID)
 
 
-def _grid(
-    pyvista: Any, cells: dict[int, Index], points: Array, arrays: Named, units: Units | None, labels: Labels
-) -> Any:
+def _grid(cells: dict[int, Index], points: Array, arrays: Named, units: Units | None, labels: Labels) -> Any:
     kept = {kind: nodes for kind, nodes in cells.items() if len(nodes)}
-    return _with_arrays(pyvista.UnstructuredGrid(kept, _placed(points, units)), arrays, units, labels)
+    return _with_arrays(require_pyvista().UnstructuredGrid(kept, _placed(points, units)), arrays, units, labels)
 
 
-def _surface(pyvista: Any, state: State, scale: float, units: Units | None) -> Any:
+def _surface(state: State, scale: float, units: Units | None) -> Any:
     """Contact surface as one line through its nodes."""
-    points, beside = in_plane(state.surface.radii, -state.surface.depths), half_space_beside(state)
-    grid = line_through(pyvista, _placed(points, units))
+    radii, heights = _placed(state.surface.radii, units), _placed(-state.surface.depths, units)
+    grid, beside = line_through(radii, heights), half_space_beside(state)
     alpha, load = map(float, beside.observables[:2])
     own = {"approach_of_half_space": alpha, "load_of_half_space": load}
-    _annotate(grid, own | (in_si(own, units) if units else {}))
+    _annotate(grid, own | in_si(own, units))
     return _with_arrays(grid, on_surface(state, beside, scale), units)
 
 
-def line_through(pyvista: Any, points: Array) -> Any:
-    """One line through points (n, 3)."""
-    return pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
+def line_through(r: Array, z: Array) -> Any:
+    """One line through points `in_plane`."""
+    return require_pyvista().PolyData(in_plane(r, z), lines=np.append(r.size, np.arange(r.size)))
 
 
 def in_plane(r: Array, z: Array) -> Array:
@@ -152,8 +148,7 @@ def _annotate(grid: Any, values: Mapping[str, float]) -> None:
 
 
 def _with_arrays(grid: Any, arrays: Named, units: Units | None, labels: Labels = COMPONENTS) -> Any:
-    shown = in_si(arrays, units) if units else arrays
-    for (name, values), plain in zip(shown.items(), arrays, strict=True):
+    for (name, values), plain in zip(in_si(arrays, units).items(), arrays, strict=True):
         grid.point_data[name] = values
         for number, component in enumerate(labels.get(plain, ())):
             grid.GetPointData().GetArray(name).SetComponentName(number, component)
