@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from skfem import MeshTri
 
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common import lines, style
@@ -19,7 +18,7 @@ from fem_adhesion.elasticity.stress import positions, sampled
 from fem_adhesion.fields import State, gaps_at, require_fields, state_at
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.errors import InputError
+from halfspace.errors import tried
 from halfspace.values import Array
 
 LOOK = {**style.LOOK, "font.size": 9.5}
@@ -27,13 +26,8 @@ LOOK = {**style.LOOK, "font.size": 9.5}
 
 def has_mesh(curves: Curves) -> bool:
     """Whether the page shows the mesh, of a body of which there is a picture, and not the central gap."""
-    if curves.solver != FINITE_ELEMENTS:
-        return False
-    try:
-        require_fields(curves.question.scene)
-    except InputError:
-        return False
-    return True
+    scene = curves.question.scene
+    return curves.solver == FINITE_ELEMENTS and tried(require_fields, scene, refusals=True) is None
 
 
 def draw(curves: Curves) -> Figure:
@@ -75,9 +69,7 @@ def outlines(state: State, reach: float) -> tuple[Array, Array]:
     """
     mesh, space = state.space.mesh, state.space
     nearest = np.hypot(*mesh.p)[mesh.t].min(axis=0)
-    corners = np.array(
-        [[0, 0], [1, 0], [0, 1]] if isinstance(mesh, MeshTri) else [[0, 0], [1, 0], [1, 1], [0, 1]], float
-    )
+    corners = space.element.refdom.p.T
     t = np.linspace(0, 1, 9)[:-1, None]  # points on a side
     sides = zip(corners, np.roll(corners, -1, axis=0), strict=True)
     round_cell = np.concatenate([a + t * (b - a) for a, b in sides]).T
