@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Literal
 
 from fem_adhesion.assess import theories
@@ -18,6 +17,7 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import Event, approach_scale, tolerance_told
 from halfspace.scaling import Units
+from halfspace.theories import curves
 from halfspace.theories.closed_forms import ContactState
 from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
 from halfspace.values import Array, Estimate
@@ -129,7 +129,7 @@ def read_atlas(
                     found |= _take_off(name, at.estimate("approach"), at.estimate("load"), stiffness)
             found |= {"energy_lost": lost} if "jump_on" in events else {}
         else:
-            read = closed("atlas", partial(theories.half_space, number=number), tabor, stiffness, unit).values
+            read = closed("atlas", theories.half_space(tabor, stiffness, number), stiffness, unit).values
             curve = atlas.curve(tabor)
             slack = Estimate(0.0, USUAL.slack * float(curve.errors[:2].max(axis=1).sum()))
             errors = {name: slack for name in read if name not in found}
@@ -151,15 +151,12 @@ def _at_rest(events: Mapping[str, Event]) -> dict[str, Estimate]:
     }
 
 
-def closed(
-    model: str, make: Callable[[float, float], Array], tabor: float, stiffness: float, units: Units
-) -> Prediction:
-    """Read a closed theory, made from the Tabor parameter and the stiffness in R dgamma/eps.
+def closed(model: str, curve: Array, stiffness: float, units: Units) -> Prediction:
+    """Read the samples of a closed theory, on a cantilever of stiffness in R dgamma/eps.
 
     The errors are those of the reading, not the theory's distance from the truth. At a turning point of the base a
     displaced sample errs in the approach alone.
     """
-    curve = make(tabor, stiffness)
     found = {
         "pull_off_force": estimated(curve, lambda c: -theories.pull_off(c).load),
         "pull_off_radius": estimated(curve, lambda c: theories.pull_off(c).contact_radius),
@@ -193,8 +190,9 @@ def large_tabor(tabor: float, stiffness: float, units: Units, layer: Layers | No
     On a thin sample the distance grows where the spike at the edge is no longer narrow beside the thickness, and that
     of the jump on, and of the energy that it decides on, where the bulge is not.
     """
-    model, make = (ON_LAYER, partial(theories.jkr_on, layer)) if layer else (ATTRACTING, theories.jkr_with_reach)
-    read, h = closed(model, make, tabor, stiffness, units), layer.thickness if layer else math.inf
+    how, h = theories.sampling(tabor, stiffness), layer.thickness if layer else math.inf
+    curve = theories.jkr_on(layer, tabor, how) if layer else curves.jkr_with_reach(tabor, how)
+    read = closed(ON_LAYER if layer else ATTRACTING, curve, stiffness, units)
     part = (USUAL.computed / tabor) ** USUAL.decay
     parts = {
         name: 1 + USUAL.bulge / h if "jump_on" in name else part * (1 + (USUAL.thin / h) ** 3) for name in QUANTITIES

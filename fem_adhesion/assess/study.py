@@ -24,7 +24,7 @@ from fem_adhesion.assess.predictions import (
 )
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.spread import Spreads, spreads
-from fem_adhesion.assess.theories import bradley, dmt_maugis, jkr, maugis_dugdale
+from fem_adhesion.assess.theories import sampling
 from fem_adhesion.assess.thin_sample import ThinSample, enough, hertz_until, indentations
 from fem_adhesion.bodies.held import Hemisphere, Meshed
 from fem_adhesion.common.contact import Contact, Inputs
@@ -36,11 +36,18 @@ from halfspace.errors import InputError, Unsolved, tried
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
+from halfspace.theories import curves
+from halfspace.values import Array
 
 HALF_SPACE, PROFILE, FINITE, PAIR = "half-space", "true profile", "finite sphere", "finite pair"
 GIVEN, MESH = "given profile", "mesh"
 Answer = TypeVar("Answer")
-THEORIES = {"JKR": jkr, "Maugis-Dugdale": maugis_dugdale, "DMT-M": dmt_maugis, "rigid": bradley}
+THEORIES: Mapping[str, Callable[[float, curves.Sampling], Array]] = {
+    "JKR": curves.jkr,
+    "Maugis-Dugdale": curves.maugis_dugdale,
+    "DMT-M": curves.dmt_maugis,
+    "rigid": lambda _, how: curves.bradley(how),
+}
 PARAMETERS = {
     "Tabor mu": None,
     "Maugis lambda": MAUGIS,
@@ -107,10 +114,11 @@ def assess(contact: Contact, progress: Progress = unheard, inputs: Inputs | None
     begin("closed theories")
     tabor, stiffness, units = contact.units.tabor, contact.reduced_stiffness, contact.units
     within = USUAL.maugis[0] <= MAUGIS.of(tabor) <= USUAL.maugis[1]
+    how = sampling(tabor, stiffness)
     theories = tuple(
-        closed(name, make, tabor, stiffness, units)
+        closed(name, make(tabor, how), stiffness, units)
         for name, make in THEORIES.items()
-        if within or make is not maugis_dugdale
+        if within or name != "Maugis-Dugdale"
     )
     begin("profile")
     profile, reason = _tried(PROFILE, _profile, contact) if contact.layer or not contact.shape else (None, None)
@@ -189,7 +197,7 @@ def _half_space(contact: Contact) -> Prediction:
     if units.tabor > USUAL.computed:
         return predictions.large_tabor(units.tabor, stiffness, units)
     if units.tabor < USUAL.rigid:
-        return closed("rigid half-space", bradley, units.tabor, stiffness, units)
+        return closed("rigid half-space", curves.bradley(sampling(units.tabor, stiffness)), stiffness, units)
     return _traced(HALF_SPACE, contact)
 
 

@@ -42,24 +42,18 @@ class Loop:
     spacing: float
 
 
-# Curves: each from the Tabor parameter and the stiffness in R dgamma/eps
+# Curves
 
 
-def _sampling(tabor: float, stiffness: float) -> curves.Sampling:
-    return curves.Sampling(_beyond(tabor, stiffness), WIDEST, USUAL.number)
+def sampling(tabor: float, stiffness: float) -> curves.Sampling:
+    """Where curves are sampled: from a gap wider than any at which a jump off lands, which is (|W|/k - alpha*) at most.
+
+    The stiffness k is in R dgamma/eps.
+    """
+    return curves.Sampling(10 + 4 * tabor + 10 / stiffness, WIDEST, USUAL.number)
 
 
-def _sampled(make: Callable[[float, curves.Sampling], Array]) -> Callable[[float, float], Array]:
-    return lambda tabor, stiffness: make(tabor, _sampling(tabor, stiffness))
-
-
-bradley = _sampled(lambda _, sampling: curves.bradley(sampling))
-dmt_maugis, jkr, jkr_with_reach, maugis_dugdale = map(
-    _sampled, (curves.dmt_maugis, curves.jkr, curves.jkr_with_reach, curves.maugis_dugdale)
-)
-
-
-def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Array:
+def jkr_on(body: LayeredBody, tabor: float, how: curves.Sampling) -> Array:
     """JKR on a layered body, and before contact the far attraction as in `halfspace.theories.curves.attracted`.
 
     The contact is smooth in the root of its radius, by which it is interpolated. The attraction falls with the radius u
@@ -72,16 +66,16 @@ def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Array:
     nodes = chebpts1(USUAL.nodes)
     states = [theory.jkr(widest * float(1 + x) ** 2 / 4) for x in nodes]
     through = chebfit(nodes, np.array([[state.approach, state.load] for state in states]), USUAL.nodes - 1)
-    s = np.linspace(0.0, 1.0, USUAL.number)
+    s = np.linspace(0.0, 1.0, how.number)
     approach, load = chebval(2 * s - 1, through)
 
-    first, last = math.log(2 / tabor) / 2, math.log(2 * _beyond(tabor, stiffness) / tabor) / 2
+    first, last = math.log(2 / tabor) / 2, math.log(2 * how.beyond / tabor) / 2
     widths = np.linspace(first, last, 100)  # the spline between them errs by less than 1e-4
     waves, weights = (part.ravel() for part in grid.gauss_points(np.array([0.0, 40.0]), 200))  # e^-40 is left out
     weights = weights * waves**2 * kv(2, waves)
     yields = surface_compliance(body, np.outer(np.exp(-widths), waves).ravel()).reshape(widths.size, -1) @ weights
     raised = CubicSpline(widths, yields / weights.sum())
-    apart = curves.attracted(tabor, _sampling(tabor, stiffness), lambda y: raised(np.log(2 * y / tabor) / 2))
+    apart = curves.attracted(tabor, how, lambda y: raised(np.log(2 * y / tabor) / 2))
     return curves.joined(apart, np.stack([tabor * approach, load, widest * s**2]))
 
 
@@ -101,7 +95,7 @@ def half_space(tabor: float, stiffness: float, number: int = USUAL.sampled) -> A
     curve = atlas.curve(tabor)
     last = curve.ends.size - 1
     s0, bulge = far_end(curve)
-    decades = math.log10(max(_beyond(tabor, stiffness) / s0, 10.0))
+    decades = math.log10(max(sampling(tabor, stiffness).beyond / s0, 10.0))
 
     def sampled(places: Array) -> Array:
         """Samples at places on the curve, which are negative farther away: -1 a decade."""
@@ -120,11 +114,6 @@ def half_space(tabor: float, stiffness: float, number: int = USUAL.sampled) -> A
         found = np.concatenate([found, *(sampled(part) for part in added)], axis=1)[:, order]
         places = new
     return found
-
-
-def _beyond(tabor: float, stiffness: float) -> float:
-    """Gap wider than any at which a jump off lands, which is (|W|/k - alpha*) at most."""
-    return 10 + 4 * tabor + 10 / stiffness
 
 
 # What is read off

@@ -94,8 +94,10 @@ def test_a_contact_that_cannot_be_is_refused(change, message):
 # Closed theories ------------------------------------------------------------------------------------------------------
 
 
-def _loop(make, tabor, stiffness):
-    return assess_theories.loop(make(tabor, stiffness), stiffness)
+def _loop(theory, tabor, stiffness):
+    """Curve of a theory and its cycle."""
+    curve = study.THEORIES[theory](tabor, assess_theories.sampling(tabor, stiffness))
+    return curve, assess_theories.loop(curve, stiffness)
 
 
 def _jkr_energy(a):
@@ -105,7 +107,7 @@ def _jkr_energy(a):
 
 def test_jkr_under_fixed_grips():
     tabor = 7.0
-    found = _loop(assess_theories.jkr, tabor, math.inf)
+    _, found = _loop("JKR", tabor, math.inf)
     off, landed = theories.jkr_jump_off(tabor), theories.jkr_zero_approach(tabor)
     assert found.jump_off[0].approach == pytest.approx(off.approach, rel=1e-8)
     assert found.jump_on[1].load == pytest.approx(landed.load, rel=1e-4)
@@ -128,7 +130,7 @@ def test_a_rigid_sphere_on_a_cantilever(stiffness):
     outer, inner = brentq(slope, 3 ** (1 / 6), 100), brentq(slope, 0.9, 3 ** (1 / 6))
     landed = brentq(lambda h: base(h) - base(outer), 0.5, inner)
     parted = brentq(lambda h: base(h) - base(inner), outer, 1e5)
-    found = _loop(assess_theories.bradley, 1.0, stiffness)
+    _, found = _loop("rigid", 1.0, stiffness)
     assert found.jump_on[0].approach == pytest.approx(1 - outer, abs=found.spacing)
     assert found.jump_off[0].approach == pytest.approx(1 - inner, abs=found.spacing)
     assert found.jump_off[1].approach == pytest.approx(1 - parted, rel=1e-6)
@@ -138,16 +140,15 @@ def test_a_rigid_sphere_on_a_cantilever(stiffness):
 
 @pytest.mark.parametrize("tabor", [0.1, 1.0, 10.0])
 def test_maugis_dugdale_under_fixed_grips(tabor):
-    theory, found = MaugisDugdale.matched(tabor), _loop(assess_theories.maugis_dugdale, tabor, math.inf)
+    theory, (curve, found) = MaugisDugdale.matched(tabor), _loop("Maugis-Dugdale", tabor, math.inf)
     assert found.jump_on[0].approach == pytest.approx(theory.jump_on().approach, abs=found.spacing)
     assert found.jump_off[0].approach == pytest.approx(theory.jump_off().approach, abs=1e-6)
-    curve = assess_theories.maugis_dugdale(tabor, 1.0)
     assert assess_theories.pull_off(curve).load == pytest.approx(theory.pull_off().load, rel=1e-8)
 
 
 def test_a_stiff_apparatus_follows_a_rigid_sphere_smoothly():
-    assert _loop(assess_theories.bradley, 0.1, 7.0) is None
-    assert _loop(assess_theories.dmt_maugis, 0.1, math.inf) is None
+    assert _loop("rigid", 0.1, 7.0)[1] is None
+    assert _loop("DMT-M", 0.1, math.inf)[1] is None
 
 
 @pytest.fixture(scope="module")
