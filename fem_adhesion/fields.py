@@ -167,18 +167,17 @@ def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", 
 
 
 def states_along(
-    scene: Scene, path: EquilibriumPath, *, points: int | None = None, events: bool = True, how: Discretisation = FIELDS
+    scene: Scene, path: EquilibriumPath, *, points: int | None = None, how: Discretisation = FIELDS
 ) -> Iterator[State]:
-    """Solve for states of a traced curve one by one, in order of their arclength.
+    """Solve for states of a traced curve and its events one by one, in order of their arclength.
 
     The path is the scene's, from `fem_adhesion.trace`; scene, `how` and errors are as of `state_at`. So many of the
     curve's points are taken, nearly equidistant in arclength with both ends; all unless given, none if 0, InputError if
-    negative. The events are taken too, or not.
+    negative.
     """
     require_fields(scene)
     chosen = [("", *path_point) for path_point in _spread(path, points)]
-    if events:
-        chosen += [(name, event.problem, event.point) for name, event in usual(path.stages[-1]).items()]
+    chosen += [(name, event.problem, event.point) for name, event in usual(path.stages[-1]).items()]
     for name, problem, point in sorted(chosen, key=lambda entry: entry[2].arclength):
         yield state_at(scene, problem, point, name=name, how=how)
 

@@ -122,10 +122,11 @@ def places(path):
     return [tuple(map(float, pair)) for pair in re.findall(r"[ML](-?[\d.]+) (-?[\d.]+)", path)]
 
 
-def straight(drawn, values):
-    """Slope and largest departure of drawn places from a linear scale of values."""
-    slope, start = np.polyfit(values, drawn, 1)
-    return slope, np.abs(slope * np.array(values) + start - drawn).max()
+def slope(drawn, values):
+    """Slope of drawn places along values, of which they are a linear scale."""
+    found, start = np.polyfit(values, drawn, 1)
+    assert np.abs(found * np.array(values) + start - drawn).max() < 0.1
+    return found
 
 
 def test_the_lines_of_each_solver_are_its_own_numbers(open_page, stations, data):
@@ -136,16 +137,12 @@ def test_the_lines_of_each_solver_are_its_own_numbers(open_page, stations, data)
         scales = []
         for kind, row in (("fe", 0), ("hs", 1)):
             x, y = zip(*places(shown.locator(f"#{panel} g path.{kind}").first.get_attribute("d")), strict=True)
-            across, off = straight(x, data["radii"])
-            assert across > 0
-            assert off < 0.1
-            upwards, off = straight(y, stations[number][panel][row])
-            assert upwards < 0  # pixels count downwards
-            assert off < 0.1
-            scales.append(upwards)
+            assert slope(x, data["radii"]) > 0
+            scales.append(slope(y, stations[number][panel][row]))
+        assert max(scales) < 0  # pixels count downwards
         assert scales[0] == pytest.approx(scales[1], rel=1e-2)
         x, y = zip(*places(shown.locator(f"#{panel} g path.hs").first.get_attribute("d")), strict=True)
-        assert straight(y, stations[number][panel][0])[0] != pytest.approx(scales[0], rel=0.1)
+        assert np.polyfit(stations[number][panel][0], y, 1)[0] != pytest.approx(scales[0], rel=0.1)
 
 
 def test_points_are_load_against_approach_hollow_if_unstable(open_page, stations):
@@ -155,12 +152,8 @@ def test_points_are_load_against_approach_hollow_if_unstable(open_page, stations
     found = circles.evaluate_all(
         "all => all.map(c => [+c.getAttribute('cx'), +c.getAttribute('cy'), c.className.baseVal])"
     )
-    across, off = straight([x for x, _, _ in found], [one["approach"] for one in stations])
-    assert across > 0
-    assert off < 0.1
-    upwards, off = straight([y for _, y, _ in found], [one["load"] for one in stations])
-    assert upwards < 0
-    assert off < 0.1
+    assert slope([x for x, _, _ in found], [one["approach"] for one in stations]) > 0
+    assert slope([y for _, y, _ in found], [one["load"] for one in stations]) < 0
     assert [kind == "station" for _, _, kind in found] == [one["stable"] for one in stations]
     assert not all(one["stable"] for one in stations)
     captions = [text.split("(")[0] for text in shown.locator(".panels figcaption").all_inner_texts()]
