@@ -90,9 +90,8 @@ def _name(law: Law, path: EquilibriumPath) -> str:
 
 
 def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> LawCurves:
-    """Trace the curves by other laws with the solver of the first, or raise as `require` does, or NotConverged."""
+    """Trace the curves by other laws, that `require` lets in, with the solver of the first, or raise NotConverged."""
     question, found = curves.question, [(curves.question.scene.law, curves.path)]
-    require(question.scene, laws)
     for number, law in enumerate(laws):
         progress(registry.words_of(law), number, len(laws))
         tabor = question.scene.tabor * question.scene.law.strength / law.strength  # the same largest tension

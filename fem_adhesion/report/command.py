@@ -52,11 +52,7 @@ def run(options: argparse.Namespace) -> int:
         fit_section(options.fit)
     with written_aside(options.html) as file, progress_bar() as step:
         cases = crosscheck.run(scenes, rtol=options.rtol, progress=step)
-
-        def walked() -> walk.Walk:
-            return walk.walk(solve.solve(question, step), progress=step)
-
-        found = tried(walked)
+        found = tried(lambda: walk.walk(solve.solve(question, step), progress=step))
         lost = found.reason if isinstance(found, Unsolved) else ""
         step("page", 0, 1)
         file.write(page(cases, found or None, directories, options.fit, lost))

@@ -189,15 +189,6 @@ def test_a_machine_that_cannot_draw_is_told_what_to_install(monkeypatch):
 # --- what is written on a picture ---
 
 
-def _texts(figure):
-    return [text.get_text() for text in figure.texts]
-
-
-def _composed(curves, state, words):
-    view = view_of([state])
-    return module.composed(curves, np.full((30, 48, 3), 255, np.uint8), state, view, words), view
-
-
 def _said(text):
     """Numbers of a caption by their symbols."""
     found = re.findall(r"\$(W|\\alpha\^\*|\\alpha|a)\$ = (-?[\d.]+)(?:\((\d+)\))?", text.replace(module.MINUS, "-"))
@@ -219,9 +210,11 @@ def test_caption_and_frame_have_the_events_numbers_by_their_symbols(block, state
 
 
 def test_the_curve_on_a_picture_has_the_state_on_it(block, states):
-    figure, view = _composed(block, states["jump_off"], ("title", "numbers"))
+    state, white = states["jump_off"], np.full((30, 48, 3), 255, np.uint8)
+    view = view_of([state])
+    figure = module.composed(block, white, state, view, ("title", "numbers"))
     solid, bar, curve = figure.axes
-    assert "title" in _texts(figure)
+    assert "title" in [text.get_text() for text in figure.texts]
     assert (curve.get_xlabel(), curve.get_ylabel()) == (
         r"approach $\alpha^* = \alpha/\epsilon$",
         r"load $W/R\Delta\gamma$",

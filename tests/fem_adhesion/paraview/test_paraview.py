@@ -30,6 +30,7 @@ pyvista = pytest.importorskip("pyvista")
 
 DEGREE = Discretisation(degree=5)
 RADIUS, SPACING, WORK = 1e-7, 3e-10, 0.1
+MODULUS = np.sqrt(RADIUS * WORK**2 / SPACING**3)  # so that the Tabor parameter is 1
 FILES = {"body": "vtu", "contact": "vtp", "solid": "vtu"}
 
 
@@ -46,8 +47,7 @@ def states():
 
 @pytest.fixture(scope="module")
 def units():
-    """A material of Tabor parameter 1."""
-    return Units(RADIUS, np.sqrt(RADIUS * WORK**2 / SPACING**3), WORK, SPACING)
+    return Units(RADIUS, MODULUS, WORK, SPACING)
 
 
 @pytest.fixture(scope="module")
@@ -319,30 +319,28 @@ WANTED = {
 }
 
 
-def sizes():
-    """SI sizes of the paper's units from the material alone."""
-    modulus = np.sqrt(RADIUS * WORK**2 / SPACING**3)  # tabor = 1
-    beta = np.cbrt(RADIUS**2 * WORK / modulus)
-    return {
-        "length": beta,
-        "displacement": beta**2 / RADIUS,
-        "pressure": modulus * beta / RADIUS,
-        "density": modulus * (beta / RADIUS) ** 2,
-        "gap": SPACING,
-    }
+BETA = np.cbrt(RADIUS**2 * WORK / MODULUS)
+SIZES = {
+    "length": BETA,
+    "displacement": BETA**2 / RADIUS,
+    "pressure": MODULUS * BETA / RADIUS,
+    "density": MODULUS * (BETA / RADIUS) ** 2,
+    "gap": SPACING,
+}
+"""SI sizes of the paper's units from the material alone."""
 
 
 def test_with_a_material_points_and_fields_are_in_si(folder, si, states):
     for kind in FILES:
         for number in range(len(states)):
             plain, real = (read(one, kind, number) for one in (folder, si))
-            np.testing.assert_allclose(real.points, plain.points * sizes()["length"], rtol=1e-12)
+            np.testing.assert_allclose(real.points, plain.points * BETA, rtol=1e-12)
             names = set(plain.point_data)
             assert names <= {*WANTED, "H", "H_of_half_space"}
             assert len(real.point_data) == len(names)
             for name in names & set(WANTED):
                 unit, size = WANTED[name]
-                np.testing.assert_allclose(real[f"{name}_{unit}"], plain[name] * sizes()[size], rtol=1e-9)
+                np.testing.assert_allclose(real[f"{name}_{unit}"], plain[name] * SIZES[size], rtol=1e-9)
                 assert labels(real, f"{name}_{unit}") == labels(plain, name)
 
 
@@ -354,11 +352,11 @@ def test_with_a_material_the_state_is_in_si_too(si, states):
         "approach_m": alpha * SPACING,
         "load_N": load * RADIUS * WORK,
         "central_gap_m": gap * SPACING,
-        "contact_radius_m": radius * sizes()["length"],
+        "contact_radius_m": radius * BETA,
         "radius_m": RADIUS,
         "spacing_m": SPACING,
         "work_of_adhesion_J_per_m2": WORK,
-        "contact_modulus_Pa": np.sqrt(RADIUS * WORK**2 / SPACING**3),  # tabor = 1
+        "contact_modulus_Pa": MODULUS,
     }
     assert {name: note(grid, name) for name in wanted} == pytest.approx(wanted, rel=1e-12, abs=0)
     true = note(grid, "magnification_of_true_displacement")
