@@ -130,6 +130,8 @@ def _spreads(assessment: Assessment) -> Iterator[RenderableType]:
 
 def spread_told(spread: Spread) -> str:
     """A quantity to the digits that its spread leaves, ``37.1 +- 7.4 nN``; quantiles where linear propagation fails."""
+    if not (spread.linear or spread.quantiles):
+        return f"{engineering(spread.value, spread.unit)}, spread not known"
     low, median, high = spread.quantiles or (math.nan,) * 3
     value, size = (spread.value, spread.deviation) if spread.linear else (median, (high - low) / 2)
     exponent = exponent_of(max(abs(value), size))
@@ -143,8 +145,6 @@ def spread_told(spread: Spread) -> str:
     unit = f"{PREFIXES[exponent]}{spread.unit}"
     if spread.linear:
         return f"{shown(value)} +- {shown(size) if float(shown(size)) else f'{size * scale:.1g}'} {unit}"
-    if not spread.quantiles:
-        return f"{shown(spread.value)} {unit}, spread not known"
     part = f"; only {100 * spread.present:.0f} % of draws have it" if spread.present < 1 else ""
     return f"median {shown(median)}, {shown(low)} to {shown(high)} {unit}{part}"
 

@@ -166,10 +166,11 @@ def test_without_an_atlas_the_first_order_alone_is_told():
         (-1.85555e-7, 1e-15, 4.4e-9, "-185.6 +- 4.4 nN"),
         (9e-9, 1e-15, 3e-7, "9 +- 300 nN"),
         (3.63346789e-7, 2e-11, 7.5e-12, "363.35 +- 0.01 nN"),
+        (9e-9, 1e-15, math.nan, "9 nN, spread not known"),
     ],
 )
 def test_digits_are_those_that_spread_and_error_leave(value, error, deviation, told):
-    assert spread_told(Spread(value, error, "N", deviation, {}, (), math.nan, True)) == told
+    assert spread_told(Spread(value, error, "N", deviation, {}, (), math.nan, math.isfinite(deviation))) == told
 
 
 @pytest.mark.parametrize(
