@@ -30,8 +30,7 @@
     const x = (value) => LEFT + (value - xRange[0]) / (xRange[1] - xRange[0]) * (WIDTH - LEFT - RIGHT);
     const y = (value) => HEIGHT - BOTTOM - (value - yRange[0]) / (yRange[1] - yRange[0]) * (HEIGHT - TOP - BOTTOM);
     const clip = `clip-${id}`;
-    const box = element(element(svg, "clipPath", { id: clip }), "rect", { x: LEFT, y: TOP, width: WIDTH - LEFT - RIGHT, height: HEIGHT - TOP - BOTTOM });
-    box.setAttribute("rx", 0);
+    element(element(svg, "clipPath", { id: clip }), "rect", { x: LEFT, y: TOP, width: WIDTH - LEFT - RIGHT, height: HEIGHT - TOP - BOTTOM });
     for (const value of ticks(xRange)) {
       element(svg, "path", { class: "axis", d: `M${x(value)} ${HEIGHT - BOTTOM}v4` });
       element(svg, "text", { x: x(value), y: HEIGHT - 8, "text-anchor": "middle" }, String(+value.toPrecision(3)));
