@@ -41,6 +41,7 @@ ON_LAYER = "thin sample"
 ATTRACTING = "JKR with attraction"
 RADII = ("pull_off_radius", "zero_load_radius")
 POSITIONS = (("jump_on_separation", "jump_off_separation"), ("jump_on_base", "jump_off_base"))  # along two axes
+JUMPS = (*POSITIONS[0], *POSITIONS[1])
 
 
 @dataclass(frozen=True)

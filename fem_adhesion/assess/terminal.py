@@ -9,7 +9,7 @@ from dataclasses import asdict, fields, replace
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from fem_adhesion.assess.predictions import ATTRACTING, POSITIONS, RADII, WORDS, Quantity
+from fem_adhesion.assess.predictions import ATTRACTING, JUMPS, RADII, WORDS, Quantity
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.spread import Spread
 from fem_adhesion.assess.study import Assessment
@@ -37,7 +37,7 @@ SHOWN = 4  # digits of a number: a contact's inputs have no more
 NARROW = 10  # letters of a line of a column's header: four columns and the models' names, framed, fit 80
 TABLES = {
     "what each model says of the contact": ("pull_off_force", "pull_off_radius", "zero_load_radius", "energy_lost"),
-    "and of its jumps": tuple(name for names in POSITIONS for name in names),
+    "and of its jumps": JUMPS,
 }
 ANSWER = ("pull_off_force", "jump_on_separation", "jump_off_separation", "energy_lost")
 STANDS = {"bonded": "bonded to its base", "sliding": "sliding on its base"}
@@ -72,7 +72,7 @@ def _answer(assessment: Assessment) -> Iterator[RenderableType]:
             if assessment.spreads and (spread := assessment.spreads.quantities.get(name)):
                 told = spread_told(replace(spread, value=quantity.value, error=quantity.error))
             yield Prose(f"  {WORDS[name]}: {told}")
-    if not best.values.keys() & {"jump_on_separation", "jump_off_separation"}:
+    if not best.values.keys() & set(JUMPS):
         yield Prose("  no jumps: the contact follows the apparatus smoothly")
     off = [
         f"{the(one.model)} is off by up to {percent(one.size)}, in {WORDS[one.worst]}"
@@ -155,7 +155,7 @@ def _legend(assessment: Assessment, digits: int) -> Iterator[str]:
         if model.source == "atlas":
             yield f"The {model.model} is read from halfspace.atlas, made of solved curves, and not solved anew."
     shown = {name for model in assessment.models for name in model.values}
-    if shown & {name for names in POSITIONS for name in names}:
+    if shown & set(JUMPS):
         yield (
             "Separation: of the undeformed surfaces just before the jump, negative if they overlap. Base position: of "
             "the cantilever's clamped end then, zero where the undeformed surfaces would be one spacing apart, "
@@ -172,7 +172,7 @@ def _legend(assessment: Assessment, digits: int) -> Iterator[str]:
     brackets = "In brackets: error of the last digit, for closed theories that of the reading only."
     fewer = f"{digits} digits, or as many as are certain; --digits all shows more and the errors."
     yield f"{brackets if digits > SHOWN else fewer} -: not in the model."
-    if any(name in shown for names in POSITIONS for name in names) and assessment.deviations:
+    if shown & set(JUMPS) and assessment.deviations:
         yield (
             "Differences of a separation or base position are in % of the spacing and the distance between both jumps, "
             "others in % of the value."

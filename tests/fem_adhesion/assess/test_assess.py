@@ -374,11 +374,11 @@ def test_a_sphere_that_is_all_but_rigid_has_bradleys_force():
 # What is said ---------------------------------------------------------------------------------------------------------
 
 
-def _model(name, force, *, on=1e-9, curve=None):
+def _model(name, force, *, on=1e-9):
     values = {"pull_off_force": Quantity(force, 0.0, "N")}
     if on is not None:
         values["jump_on_separation"] = Quantity(on, 0.0, "m")
-    return Prediction(name, values, curve)
+    return Prediction(name, values)
 
 
 def _verdict(half_space, profile, finite, *theories):

@@ -410,13 +410,9 @@ def test_no_cell_of_a_solid_is_inside_out(section, mirrored):
     solid = revolved(section, cells, 30.0)
     grid = pyvista.UnstructuredGrid({kind: nodes for kind, nodes in solid.cells.items() if len(nodes)}, solid.points)
     assert grid.n_cells == 2
-    total = 0.0
     for k in range(grid.n_cells):
         cell = grid.GetCell(k)
-        found = [_jacobian(cell, np.array(place)) for place in _inside(cell)]
-        assert min(found) > 0
-        total += np.mean(found)
-    assert total > 0
+        assert min(_jacobian(cell, np.array(place)) for place in _inside(cell)) > 0
 
 
 def _inside(cell):
