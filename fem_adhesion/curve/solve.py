@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.common.jobs import Progress, unheard
+from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.common.numbers import PREFIXES, exponent_of
 from fem_adhesion.common.record import UNITS
 from fem_adhesion.scene import Scene
@@ -154,12 +154,12 @@ def solve(question: Question, progress: Progress = unheard) -> Curves:
         from fem_adhesion.weak_form.curve import trace as by_weak_form  # here, as few curves need it
 
         return Curves(question, {WEAK_FORM: by_weak_form(question.scene, question.rtol, to_load=question.to_load)})
-    paths = {}
-    for done, name in enumerate(names):
-        progress(name, done, len(names) + 1)
+    paths, begin = {}, in_turn(progress, len(names) + 1)
+    for name in names:
+        begin(name)
         path = trace(question, name)
         paths[name] = path.resampled(points) if points and points > path.count else path
-    progress("jumps", len(names), len(names) + 1)
+    begin("jumps")
     path = paths[names[0]]
     apparatus = None if math.isinf(question.stiffness) else cycle(path, question.stiffness)
     return Curves(question, paths, cycle(path), apparatus)
