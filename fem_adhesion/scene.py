@@ -239,7 +239,7 @@ class Scene:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class UpTo(Valued):
+class UpTo(Valued, Surface):
     """A surface up to a radius `end` in beta, where the body ends."""
 
     surface: Surface

@@ -154,7 +154,7 @@ class Sphere:
 
 
 @dataclass(frozen=True)
-class SphereSurface(Dimensionless):
+class SphereSurface(Surface):
     """Gap between a sphere and a wall or a larger sphere: the heights R1 - sqrt(R1^2 - r^2) of both add.
 
     It goes up to the equator of the smaller, the radius `end` = R1/beta; `counter` is R2/beta, infinite for a wall.

@@ -6,7 +6,7 @@ asked for. Most are the same surface at every Tabor parameter; one with a length
 
 from __future__ import annotations
 
-from typing import ClassVar, Protocol, Self
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -14,35 +14,36 @@ from halfspace.limits import off_derivative, require_all, require_part
 from halfspace.values import Array
 
 
-class Surface(Protocol):
-    """Height of the undeformed surface over its pole as a function of the radius, which rises."""
+class Surface:
+    """Height of the undeformed surface over its pole as a function of the radius, which rises.
 
-    @property
-    def end(self) -> float:
-        """Radius in beta at which the surface ends; infinite if it does not."""
-        ...
+    `end` is the radius in beta at which it ends, infinite if it does not. It is as smooth across the axis as a
+    paraboloid unless it says otherwise.
+    """
+
+    end: float
 
     @property
     def pointed(self) -> bool:
         """Whether it rises from the axis as a power of the radius that is no polynomial in its square."""
-        ...
+        return False
 
     @property
     def pieced(self) -> bool:
         """Whether some derivative leaps between pieces of it, as of a spline."""
-        ...
+        return False
 
     def height(self, radii: Array) -> Array:
         """Height in beta^2/R at radii in beta."""
-        ...
+        raise NotImplementedError
 
     def slope(self, radii: Array) -> Array:
         """Derivative of the height by the radius."""
-        ...
+        raise NotImplementedError
 
-    def first_cell(self, tolerance: float) -> float:
+    def first_cell(self, tolerance: float) -> float:  # noqa: ARG002 (smooth)
         """Length in beta of an axis cell of which one node leaves `tolerance`; infinite if a paraboloid's will do."""
-        ...
+        return np.inf
 
 
 class Profile(Protocol):
@@ -70,34 +71,15 @@ def require_profile(profile: Profile) -> Profile:
     return profile
 
 
-class Dimensionless:
-    """A profile that is the same surface at every Tabor parameter, as smooth across the axis as a paraboloid."""
-
-    pieced: ClassVar[bool] = False  # whether some derivative leaps between pieces of it, as of a spline
-
-    @property
-    def pointed(self) -> bool:
-        """False: smooth."""
-        return False
+class Dimensionless(Surface):
+    """A profile that is the same surface at every Tabor parameter."""
 
     def surface(self, tabor: float) -> Self:  # noqa: ARG002 (the same at all)
         """Return the profile itself."""
         return self
-
-    def first_cell(self, tolerance: float) -> float:  # noqa: ARG002 (smooth)
-        """Infinity: a paraboloid's will do."""
-        return np.inf
 
 
 class Endless(Dimensionless):
     """One that goes on for ever: a profile of one's own is a class on this one with `height` and `slope`."""
 
     end: float = np.inf
-
-    def height(self, radii: Array) -> Array:
-        """Height in beta^2/R at radii in beta."""
-        raise NotImplementedError
-
-    def slope(self, radii: Array) -> Array:
-        """Derivative of the height by the radius."""
-        raise NotImplementedError

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from halfspace.errors import InputError
 from halfspace.limits import require_radius_ratio
-from halfspace.profiles.profile import Dimensionless, Surface
+from halfspace.profiles.profile import Surface
 from halfspace.values import Array, Valued, keep, read_columns
 
 if TYPE_CHECKING:
@@ -155,7 +155,7 @@ def _fitted(x: Array, z: Array, pieces: int) -> BSpline:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Tip(Valued, Dimensionless):
+class Tip(Valued, Surface):
     """A table's surface.
 
     Parameters
@@ -169,12 +169,11 @@ class Tip(Valued, Dimensionless):
     table: Tabulated
     beta: float
 
-    pieced: ClassVar[bool] = True  # the fifth derivative of its spline leaps
+    end: float = field(init=False)
+    pieced = True  # the fifth derivative of its spline leaps
 
-    @property
-    def end(self) -> float:
-        """Radius in beta at which it ends."""
-        return self.table.end / self.beta
+    def __post_init__(self) -> None:
+        keep(self, end=self.table.end / self.beta)
 
     def height(self, radii: Array) -> Array:
         """Height over the apex."""
@@ -187,17 +186,16 @@ class Tip(Valued, Dimensionless):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TabulatedSurface(Valued, Dimensionless):
+class TabulatedSurface(Valued, Surface):
     """Heights (n,) at ascending radii (n,), with their slopes: the surface of a body that is given as a mesh."""
 
     radii: Array
     heights: Array
     slopes: Array
+    end: float = field(init=False)
 
-    @property
-    def end(self) -> float:
-        """Radius in beta at which the surface ends."""
-        return float(self.radii[-1])
+    def __post_init__(self) -> None:
+        keep(self, end=float(self.radii[-1]))
 
     def height(self, radii: Array) -> Array:
         """Cubic between the points."""
