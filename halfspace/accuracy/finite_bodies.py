@@ -17,7 +17,7 @@ import numpy as np
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.grid import SurfaceCoordinate
-from halfspace.elastic.operators import ROOM, Interpolated, MovingGrid, Part, Piecewise, chebyshev_lengths, kernels_of
+from halfspace.elastic.operators import ROOM, Interpolated, MovingGrid, Piecewise, chebyshev_lengths, kernels_of
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import WIDEST, contact_of, require_narrow
 from halfspace.errors import GridTooLarge
@@ -181,10 +181,10 @@ class SizedBody(Valued):
         inner = grid.towards_axis(inner, self.first / widest, self._growth)
         moving = self._moving(inner, grid.geometric(rest, self.length, self._growth, self.last) / rest)
         lengths = [chebyshev_lengths(*between, count) for between, count in zip(pairwise(x), counts, strict=True)]
-        parts = [Part(edges, partial(_kernels, self, moving, edges)) for edges in lengths]
+        kernel = Piecewise(np.array(x), lengths, partial(_kernels, self, moving))
         made = self.made(moving.lines_at(lengths[0]))
-        parts[0].knowing(kernels_of([operator for operator, _ in made]))
-        operator = Interpolated(Piecewise(np.array(x), parts), made[0][0].cell_nodes, moving)
+        kernel.kernels(0, kernels_of([operator for operator, _ in made]))
+        operator = Interpolated(kernel, made[0][0].cell_nodes, moving)
         return Chart(contact_of(self.scales, operator), made[0][1])
 
     def _moving(self, inner: Array, outside: Array) -> MovingGrid:

@@ -27,14 +27,9 @@ class Operator(ABC):
     """Whether the cells on both sides of the contact edge are, as on a grid that stands still or is scaled."""
 
     @property
-    def least_radius(self) -> float:
-        """Least contact radius that it serves, in beta."""
-        return 0.0
-
-    @property
-    def widest_radius(self) -> float:
-        """Widest contact radius that it serves, in beta."""
-        return np.inf
+    def served(self) -> tuple[float, float]:
+        """Least and widest contact radius that it serves, in beta."""
+        return 0.0, np.inf
 
     @property
     @abstractmethod
@@ -42,9 +37,9 @@ class Operator(ABC):
         """Row (q,) that interpolates nodal values on the axis."""
 
     @property
-    @abstractmethod
     def edge_row(self) -> Array:
         """Row (q,) that interpolates nodal values at the contact edge of a grid that follows it."""
+        raise AttributeError("the grid does not follow the contact; use interpolation at its radius")
 
     @abstractmethod
     def at(self, scale: float) -> ElasticOperator:
@@ -214,11 +209,6 @@ class ElasticOperator(SurfaceNodes, Operator):
     def widened(self, nodes: int, reach: float) -> ElasticOperator:
         """Return the body with other cells beyond its extent, see `to_infinity`."""
         return to_infinity(self, nodes, reach)
-
-    @property
-    def edge_row(self) -> Array:
-        """Row that interpolates at the contact edge, which a grid that stands still has nowhere in particular."""
-        raise AttributeError("the grid does not follow the contact; use interpolation at its radius")
 
     def at(self, scale: float) -> ElasticOperator:  # noqa: ARG002 (the same at every contact radius)
         """Return the operator itself, whatever the contact radius."""

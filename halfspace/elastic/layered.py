@@ -29,7 +29,7 @@ from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
 from halfspace.elastic.grid import gauss_legendre, polynomial
 from halfspace.elastic.kernel import near_moments, of_lagrange
 from halfspace.elastic.layers import LayeredBody, surface_compliance, total_thickness
-from halfspace.elastic.operators import NearlyHomogeneous, Part, Piecewise, chebyshev_lengths, nodes_beside
+from halfspace.elastic.operators import NearlyHomogeneous, Piecewise, chebyshev_lengths, nodes_beside
 from halfspace.errors import InputError, NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
@@ -256,12 +256,12 @@ def nearly_homogeneous(
     degree = int(np.ceil(np.log(2 / left) / np.arcsinh(pole)))
     ends = least * ratio ** np.arange(np.ceil(np.log(HOW.wider * widest / least) / np.log(ratio)) + 1)
     lengths = [chebyshev_lengths(*part, degree) for part in pairwise(ends.tolist())]
-    parts = [Part(a, partial(_in_units, images, unit, max(a[-1], widest) + until - widest, left, a)) for a in lengths]
-    return NearlyHomogeneous(unit, Piecewise(ends, parts))
+    return NearlyHomogeneous(unit, Piecewise(ends, lengths, partial(_in_units, images, unit, widest, until, left)))
 
 
-def _in_units(images: Images, unit: ElasticOperator, until: float, left: float, radii: Array) -> Array:
-    return image_kernels(images.in_units(radii, left), unit, until / float(radii.min()))
+def _in_units(images: Images, unit: ElasticOperator, widest: float, until: float, left: float, radii: Array) -> Array:
+    farthest = max(radii[-1], widest) + until - widest
+    return image_kernels(images.in_units(radii, left), unit, farthest / float(radii.min()))
 
 
 def _blocks(count: int, size: int) -> list[slice]:

@@ -66,38 +66,29 @@ class Homogeneous(Valued, Operator):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Part(Valued):
-    """Kernels (q, q) between some lengths (m,): the polynomial in their logarithm through those at these lengths.
+class Piecewise(Valued):
+    """Kernels (q, q) at all lengths, in k parts, each of which serves those from one of the ends (k + 1,) to the next.
 
-    `make` gives these, (m, q, q). It is asked when they are first needed, and again where they had to make room for
-    others.
+    In a part they are the polynomial in the logarithm of the length through those at some lengths (m,). `make` gives
+    these, (m, q, q), from the lengths. It is asked when they are first needed, and again where they had to make room
+    for others.
     """
 
-    lengths: Array
-    make: Callable[[], Array]
-
-    def at(self, length: float, derivative: int) -> Array:
-        """Kernel (q, q) at a length, or its derivative by the logarithm of that."""
-        nodes = np.log(self.lengths)
-        weights = lagrange(nodes, barycentric(nodes), float(np.log(length)))[derivative]
-        return np.asarray(np.tensordot(weights, STORE.get(self, "kernels", self.make), 1))
-
-    def knowing(self, kernels: Array) -> Part:
-        """The same, which need not make its kernels at first: they are there."""
-        STORE.get(self, "kernels", lambda: kernels)
-        return self
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Piecewise(Valued):
-    """Kernels at all lengths, by parts (k,), each of which serves those from one of the ends (k + 1,) to the next."""
-
     ends: Array
-    parts: Sequence[Part]
+    lengths: Sequence[Array]
+    make: Callable[[Array], Array]
 
     def at(self, length: float, derivative: int) -> Array:
         """Kernel (q, q) at a length, or its derivative by the logarithm of that."""
-        return self.parts[int(np.searchsorted(self.ends[1:-1], length))].at(length, derivative)
+        part = int(np.searchsorted(self.ends[1:-1], length))
+        nodes = np.log(self.lengths[part])
+        weights = lagrange(nodes, barycentric(nodes), float(np.log(length)))[derivative]
+        return np.asarray(np.tensordot(weights, self.kernels(part), 1))
+
+    def kernels(self, part: int, known: Array | None = None) -> Array:
+        """Kernels (m, q, q) of a part, which need not be made at first if they are known."""
+        make = partial(self.make, self.lengths[part])
+        return STORE.get(self, f"kernels {part}", make if known is None else lambda: known)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -111,14 +102,9 @@ class NearlyHomogeneous(Homogeneous):
     remainder: Piecewise
 
     @property
-    def least_radius(self) -> float:
-        """Least contact radius that it serves."""
-        return float(self.remainder.ends[0])
-
-    @property
-    def widest_radius(self) -> float:
-        """Widest contact radius that it serves."""
-        return float(self.remainder.ends[-1])
+    def served(self) -> tuple[float, float]:
+        """Least and widest contact radius that it serves."""
+        return float(self.remainder.ends[0]), float(self.remainder.ends[-1])
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
@@ -180,14 +166,9 @@ class Interpolated(Valued, Operator):
         return self.grid.coordinate.radius(self.kernel.ends)[0]
 
     @property
-    def least_radius(self) -> float:
-        """Least contact radius that it serves."""
-        return float(self.scales[0])
-
-    @property
-    def widest_radius(self) -> float:
-        """Widest contact radius that it serves."""
-        return float(self.scales[-1])
+    def served(self) -> tuple[float, float]:
+        """Least and widest contact radius that it serves."""
+        return float(self.scales[0]), float(self.scales[-1])
 
     @cached_property
     def axis_row(self) -> Array:

@@ -266,7 +266,7 @@ class ContactProblem(Valued):
         radius, body = self.contact_radius(x), self.nodes_at(x)
         if np.isnan(radius):
             return
-        require_narrow(radius, self.operator.widest_radius)
+        require_narrow(radius, self.operator.served[1])
         cell, nodes = body.cell_of(radius), body.cell_nodes.shape[1]
         intervals = max(nodes - 1, 1)
         spacing = float((body.cells[cell + 1] - body.cells[cell]) / intervals)

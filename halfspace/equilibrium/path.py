@@ -237,7 +237,7 @@ def _advance(
     point = points[-1]
     guess = predict(problem, point, step, _bend(points[-2], point, step, metric) if len(points) > 1 else 0.0)
     new = correct(problem, point, step, metric, guess, iterations=steps.iterations, contraction=steps.contraction)
-    least = problem.interface.operator.least_radius
+    least, _ = problem.interface.operator.served
     if not new or new.observables[CONTACT_RADIUS] < least:
         return new and Unsolved(f"the contact radius is below {least:.3g} beta, the chart's least")
     if max(_turn(point, new, metric), _aside(point, new, metric)) > 2 * steps.turn:

@@ -132,7 +132,7 @@ def test_operators_on_a_stiff_coating_are_known_between_their_radii():
     scales = Scales(4.0, profile=Sphere(20.0, 1.0).surface(4.0), body=Coated(0.5, 100.0))
     body = layered_body(scales, images_of(scales.body), resolution_for(scales, 1e-3))
     operator = body.curve(1e-3)[1].problem.operator
-    known = operator.kernel.parts[0].lengths
+    known = operator.kernel.lengths[0]
     for a in np.sqrt(known[1:] * known[:-1])[::3]:
         exact, pressure = body.make(operator.grid.lines(a))[0], np.exp(-((operator.at(a).radii / a) ** 2))
         off = (operator.at(a).compliance - exact.compliance) @ pressure

@@ -10,7 +10,7 @@ from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.grid import FLAT, SurfaceCoordinate
-from halfspace.elastic.operators import Interpolated, MovingGrid, Part, Piecewise, chebyshev_lengths, kernels_of
+from halfspace.elastic.operators import Interpolated, MovingGrid, Piecewise, chebyshev_lengths, kernels_of
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.profiles.formulas import SphereSurface
 
@@ -59,8 +59,8 @@ def body(request):
 
 def _between(scales, operators, moving):
     edges = np.array([moving.coordinate.of(float(a)) for a in scales])
-    part = Part(edges, lambda: kernels_of(operators))
-    return Interpolated(Piecewise(edges[[0, -1]], [part]), operators[0].cell_nodes, moving)
+    kernel = Piecewise(edges[[0, -1]], [edges], lambda _: kernels_of(operators))
+    return Interpolated(kernel, operators[0].cell_nodes, moving)
 
 
 def interpolated(body, count, ratio=1.7):

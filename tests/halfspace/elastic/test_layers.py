@@ -143,7 +143,7 @@ def test_a_stiff_coating_is_known_between_its_radii():
     for body in (Coated(0.5, 100.0), Coated(0.5, 10.0), Coated(0.5, 0.1)):
         scales, images = Scales(3.0, body=body), images_of(body)
         operator = layered_charts(scales, images, resolution_for(scales, 1e-3))[1].problem.operator
-        known = operator.remainder.parts[0].lengths
+        known = operator.remainder.lengths[0]
         for a in np.sqrt(known[1:] * known[:-1])[::4]:
             here = operator.at(a)
             alone = replace(here, compliance=operator.unit.scaled(a).compliance)
@@ -184,12 +184,12 @@ def test_images_in_units_of_the_contact_deflect_alike(body):
     unit = compliance.panels(grid.graded(1.0, 0.1, 20.0, growth=3.0), 8)
     pressure = np.exp(-(unit.radii**2))
     operator = nearly_homogeneous(images, unit, (0.3, 3.0), np.inf, 1e-12)
-    for a, widest in ((operator.least_radius, 3.0), (0.95, 3.0), (2.999, 3.0), (7.0, 30.0)):
+    for a, widest in ((operator.served[0], 3.0), (0.95, 3.0), (2.999, 3.0), (7.0, 30.0)):
         own = replace(images, smooth=images.smooth * a / widest)
         wanted = a * unit.compliance + image_compliance(own, unit.scaled(a))
         found, wanted = (each @ pressure for each in (operator.at(a).compliance, wanted))
         assert found == pytest.approx(wanted, rel=0, abs=(1e-10 + rounded) * np.abs(wanted).max())
-    assert operator.least_radius == pytest.approx(0.3)
+    assert operator.served[0] == pytest.approx(0.3)
 
 
 def test_images_serve_a_contact_wider_than_the_attraction():
