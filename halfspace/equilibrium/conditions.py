@@ -278,7 +278,7 @@ def _solved(
     direction, slope, left = metric.weights * near.rates, None, 0.0
     if condition.stationary:
         turn = newton.turning_point(problem, start, condition.weights, direction, reach)
-        solution, slope, left = (turn.solution, turn.slope, turn.left) if turn else (turn, None, 0.0)
+        solution, slope, left = turn or (turn, None, 0.0)
     else:
         control = Control(condition.weights, condition.value)
         solution = newton.attempt(problem, start, control, tolerance=LOCATE.solved)

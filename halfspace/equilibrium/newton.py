@@ -238,23 +238,13 @@ def tangent(problem: Equilibrium, solution: Solution) -> Array:
     return t + solution.solver(unit - appended(problem.along(solution.x, t), float(row @ t)), NEWTON.left)
 
 
-@final
-@dataclass(frozen=True, eq=False, repr=False)
-class Turn(Valued):
-    """A state at which a weighted sum of observables turns along the path, and how fast its rate changes there.
-
-    The arclength `left` is what the last steps were along the path: where rounding ends them it is known no better.
-    """
-
-    solution: Solution
-    slope: float
-    left: float
-
-
 def turning_point(
     problem: Equilibrium, start: Array, weights: Array, direction: Array, reach: float
-) -> Turn | Unsolved:
+) -> tuple[Solution, float, float] | Unsolved:
     """Solve for the state near a start at which a weighted sum of the observables is stationary along the path.
+
+    Return it, how fast the rate of the sum changes there, and the arclength that the last steps were along the path:
+    where rounding ends them it is known no better.
 
     Newton's method on the equilibrium and the sum's rate psi = c t, c the sum's gradient, t the tangent of the path.
     The weights (4,) are of the observables in the sum, the direction (4,) is the arclength's gradient at a point
@@ -282,7 +272,7 @@ def turning_point(
         rounding = last / 2 < update < NEWTON.rounded
         if near and damping == 1 and (update < NEWTON.turned or rounding):
             solution = Solution(x, problem.observables(x), iteration, update, Control(direction, 0.0), here.solver)
-            return Turn(solution, slope, abs(step) + rounding * before)
+            return solution, slope, abs(step) + rounding * before
         last, before = update, abs(step) if near else 0.0
     return Unsolved("the path does not turn here; take a smaller rtol")
 
