@@ -17,7 +17,7 @@ from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
 from halfspace.errors import InputError
 from halfspace.scales import Scales
-from halfspace.values import Array, Valued
+from halfspace.values import Array
 
 
 @dataclass(frozen=True)
@@ -82,23 +82,15 @@ def twin_of(resolution: Resolution) -> Resolution:
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Rings(Valued):
-    """Breakpoints of two charts: centred on the axis up to a contact radius, then on the edge, whose radius is 1.
+def rings(scales: Scales, how: Resolution, to_load: float = COMPRESSION) -> tuple[Array, float, Array | None]:
+    """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`.
 
+    They are those of two charts: centred on the axis, up to a contact radius, and then on the edge, whose radius is 1.
     There is no second chart where the first is fine wherever a contact may end.
     """
-
-    centred: Array
-    edge: Array | None = None
-    until: float = math.inf
-
-
-def rings(scales: Scales, how: Resolution, to_load: float = COMPRESSION) -> Rings:
-    """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`."""
     outer, growth = scales.radius_at(how.extent**2 / 2), scales.growth(how.growth)
     if scales.law.outermost:
-        return Rings(_fine_throughout(scales, how.finest, growth, outer, to_load))
+        return _fine_throughout(scales, how.finest, growth, outer, to_load), math.inf, None
     length, widest = scales.edge_cell(how.finest), scales.widest_radius(to_load)
     first = at_tip(scales.profile, how.nodes)
     towards = GRIDS.tip * growth if scales.profile.pointed else growth
@@ -107,7 +99,7 @@ def rings(scales: Scales, how: Resolution, to_load: float = COMPRESSION) -> Ring
     centred = grid.graded(0.0, length, outer, growth=growth, until=reach)
     edge = grid.graded(1.0, 2 * length / widest, outer / (leave * equal * length), growth=growth)  # as wide at first
     edge = grid.towards_axis(edge, first / widest, towards)
-    return Rings(grid.towards_axis(centred, first, towards), edge, leave * reach)
+    return grid.towards_axis(centred, first, towards), leave * reach, edge
 
 
 def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float, to_load: float) -> Array:
@@ -137,13 +129,13 @@ def half_space_charts(
     scales: Scales, resolution: Resolution, *, to_load: float = COMPRESSION, make: MakeOperator = endless
 ) -> tuple[Chart, ...]:
     """Charts of the half-space: centred on the axis and, unless that is fine throughout, following the contact edge."""
-    lines = rings(scales, resolution, to_load)
-    centred = make(resolution.nodes, scales.tail_reach, lines.centred)
-    leave = lines.until / CHARTS.leave  # the end of the equal cells
-    first = Chart(contact_of(scales, centred), centred.radii.size, lines.until, leave)
-    if lines.edge is None:
+    lines, until, further = rings(scales, resolution, to_load)
+    centred = make(resolution.nodes, scales.tail_reach, lines)
+    leave = until / CHARTS.leave  # the end of the equal cells
+    first = Chart(contact_of(scales, centred), centred.radii.size, until, leave)
+    if further is None:
         return (first,)
-    edge = make(resolution.nodes, scales.tail_reach, lines.edge)
+    edge = make(resolution.nodes, scales.tail_reach, further)
     return first, Chart(contact_of(scales, Homogeneous(edge)), edge.radii.size)
 
 

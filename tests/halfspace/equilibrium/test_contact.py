@@ -141,8 +141,8 @@ def test_the_load_does_not_miss_the_attraction_beyond_the_grid(tabor, gap):
     """The same state on grids of any extent."""
     states = []
     for extent in (6.0, 9.0, 60.0):
-        lines = rings(Scales(tabor), Resolution(16, 0.4, 2.0, extent * tabor**0.25))
-        problem = ContactProblem(compliance.to_infinity(compliance.panels(lines.centred, 14), 14), tabor)
+        lines, *_ = rings(Scales(tabor), Resolution(16, 0.4, 2.0, extent * tabor**0.25))
+        problem = ContactProblem(compliance.to_infinity(compliance.panels(lines, 14), 14), tabor)
         x = newton.solve(problem, approached(problem, min(gap, 1.0)), newton.central_gap(gap)).x
         states.append(problem.observables(x)[:3])
     for observables in states[:2]:
