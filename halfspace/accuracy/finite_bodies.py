@@ -17,10 +17,10 @@ import numpy as np
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.grid import SurfaceCoordinate
+from halfspace.elastic.kernel import require_memory
 from halfspace.elastic.operators import ROOM, Interpolated, MovingGrid, Piecewise, chebyshev_lengths, kernels_of
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import WIDEST, contact_of, require_narrow
-from halfspace.errors import GridTooLarge
 from halfspace.profiles import Surface
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
@@ -125,7 +125,9 @@ class SizedBody(Valued):
         made: list[Made] = []
         for few in np.array_split(lines, math.ceil(len(lines) / CHARTS.together)):
             made += self.together(few) if self.together else [self.make(one) for one in few]
-            require_stored(len(lines), made[0][0].radii.size)
+            nodes = made[0][0].radii.size
+            whose = f"{nodes} nodes at {len(lines)} contact radii, whose kernels"
+            require_memory(8 * len(lines) * nodes**2, ROOM, whose)
         return made
 
     def curve(self, error: float = CHARTS.roughly) -> tuple[Chart, Chart]:
@@ -220,15 +222,6 @@ class SizedBody(Valued):
     def _decay(self, error: float) -> float:
         """Logarithm of what a polynomial through no operator would err by, in errors that it may leave."""
         return float(np.log(CHARTS.across * self.scales.softest / error))
-
-
-def require_stored(count: int, nodes: int) -> None:
-    """Raise GridTooLarge if the store has no room for the kernels between so many nodes at so many contact radii."""
-    if (size := 8 * count * nodes**2) > ROOM:
-        raise GridTooLarge(
-            f"{nodes} nodes at {count} contact radii, whose kernels take {size / 1e9:.2g} GB, "
-            f"limit: {ROOM / 1e9:.2g} GB"
-        )
 
 
 def _kernels(body: SizedBody, moving: MovingGrid, edges: Array) -> Array:

@@ -104,10 +104,13 @@ def _elliptic_b(k: Array) -> Array:
 
 def require_room(nodes: int, integrals: int) -> None:
     """Raise GridTooLarge if so many integrals for each node of some grids take more memory than they may."""
-    if (size := 8 * nodes * integrals) > RULES.largest:
-        raise GridTooLarge(
-            f"{nodes} nodes, whose integrals take {size / 1e9:.2g} GB, limit: {RULES.largest / 1e9:.3g} GB"
-        )
+    require_memory(8 * nodes * integrals, RULES.largest, f"{nodes} nodes, whose integrals")
+
+
+def require_memory(size: int, most: float, whose: str) -> None:
+    """Raise GridTooLarge if what is named takes more bytes than it may."""
+    if size > most:
+        raise GridTooLarge(f"{whose} take {size / 1e9:.2g} GB, limit: {most / 1e9:.3g} GB")
 
 
 def panel_integrals(targets: Array, breakpoints: Array, nodes: Array, ring: Ring = flat_ring) -> Array:
