@@ -22,14 +22,13 @@ from functools import cache, cached_property
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg.lapack import dgetrf, dgetrs
 
 from fem_adhesion.elasticity.condensation import Dissection
 from fem_adhesion.elasticity.elimination import Factors
 from fem_adhesion.elasticity.exterior import Exterior
 from fem_adhesion.finite_strain.body import Body
 from fem_adhesion.finite_strain.settings import USUAL, Settings
-from halfspace.equilibrium.contact import Solver, count_negative
+from halfspace.equilibrium.contact import Solver, count_negative, factorised
 from halfspace.values import Array, Valued
 
 
@@ -54,13 +53,11 @@ class Tangent(Factors):
         """
         matrix = np.vstack([change, row])
         matrix[:-1, :-1] += self.stiffness
-        lu, pivots, singular = dgetrf(matrix, overwrite_a=True)
-        if singular:
-            lu[:] = np.nan
+        solved = factorised(matrix)
 
         def solve(rhs: Array) -> Array:
             x = self.carried(rhs[:-1])
-            ends = dgetrs(lu, pivots, np.append(x[self.left], rhs[-1]))[0]
+            ends = solved(np.append(x[self.left], rhs[-1]))
             self.recover(x, ends[:-1])
             x[-1] = ends[-1]
             return x

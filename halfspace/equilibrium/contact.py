@@ -155,10 +155,7 @@ class ContactProblem(Valued):
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
-        lu, pivots, singular = dgetrf(self._bordered(x, row), overwrite_a=True)
-        if singular:
-            lu[:] = np.nan
-        return lambda rhs, _=0.0: np.asarray(dgetrs(lu, pivots, rhs)[0])  # factors have all digits
+        return factorised(self._bordered(x, row))
 
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius (nan without contact), shape (4,)."""
@@ -356,6 +353,14 @@ def contact_of(scales: Scales, operator: Operator) -> ContactProblem:
     problem = ContactProblem(operator, scales.tabor, scales.law, scales.profile)
     keep(problem, scales=scales.of_contact)  # what is cached of them is found once for all charts
     return problem
+
+
+def factorised(matrix: Array) -> Solver:
+    """Solver by the factors of a matrix, which have all digits; it is overwritten. All nan if it is singular."""
+    lu, pivots, singular = dgetrf(matrix, overwrite_a=True)
+    if singular:
+        lu[:] = np.nan
+    return lambda rhs, _=0.0: np.asarray(dgetrs(lu, pivots, rhs)[0])
 
 
 def count_negative(matrix: Array) -> int:
