@@ -12,7 +12,7 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import Field, dataclass, fields, is_dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -232,16 +232,7 @@ def _numbers(line: str) -> list[float] | None:
     return [first, second]
 
 
-class Sized(Protocol):
-    """What knows how many bytes it takes."""
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes."""
-        ...
-
-
-Kept = TypeVar("Kept", bound=Sized)
+T = TypeVar("T")
 
 
 class Recent:
@@ -254,15 +245,16 @@ class Recent:
         self.room = room
         self._entries: dict[tuple[int, str], tuple[weakref.ref[object], Hashable, Any]] = {}
 
-    def get(self, owner: object, name: str, make: Callable[[], Kept], version: Hashable = None) -> Kept:
-        """Entry of an owner in a version, made unless it is still there."""
+    def get(self, owner: object, name: str, make: Callable[[], T], version: Hashable = None) -> T:
+        """Entry of an owner in a version, made unless it is still there; it says its `nbytes`."""
         which = id(owner), name
         known = self._entries.pop(which, None)
         if known is None or known[0]() is not owner or known[1] != version:
-            known = weakref.ref(owner), version, make()
-            self._make_room(known[2].nbytes)
+            made: Any = make()
+            known = weakref.ref(owner), version, made
+            self._make_room(made.nbytes)
         self._entries[which] = known
-        kept: Kept = known[2]
+        kept: T = known[2]
         return kept
 
     def _make_room(self, needed: float) -> None:
