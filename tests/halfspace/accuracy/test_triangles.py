@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from agreement import differing
+from references import smooth_pressure
 
 import halfspace
 from fem_adhesion import cli
@@ -59,22 +60,18 @@ def test_the_whole_curve_is_there_with_its_branches_states_and_stability():
 # --- the operators ---
 
 
-def _smooth(radii):
-    return (1 + radii**2) ** -3.0
-
-
 @pytest.mark.parametrize(("make", "parts"), [(compliance.triangles, 2), (compliance.bands, 3)], ids=STRAIGHT)
 def test_two_intervals_leave_an_error_of_third_order_or_better(make, parts):
     """Of the load, known for p = 1/(1 + r^2)^3, and of the mean deflection under it by panels, on uniform intervals."""
     known = compliance.panels(grid.uniform(8.0, 0.5), 16)
     true = math.pi / 2 * (1 - (1 + 8**2) ** -2.0)
-    assert known.weights @ _smooth(known.radii) == pytest.approx(true, rel=1e-12)
-    work = _smooth(known.radii) * known.weights @ known.compliance @ _smooth(known.radii)
+    assert known.weights @ smooth_pressure(known.radii) == pytest.approx(true, rel=1e-12)
+    work = smooth_pressure(known.radii) * known.weights @ known.compliance @ smooth_pressure(known.radii)
     plain, errors = [], []
     for spacing in (0.2, 0.1, 0.05):
         lines = grid.uniform(8.0, spacing)
         for body, off in ((make(lines), plain), (extrapolated(make, lines, parts), errors)):
-            pressure, bears = _smooth(body.radii), _smooth(body.radii) * body.weights
+            pressure, bears = smooth_pressure(body.radii), smooth_pressure(body.radii) * body.weights
             off.append([abs(bears @ body.compliance @ pressure - work), abs(body.weights @ pressure - true)])
     orders, better = (np.log2(np.array(off[:-1]) / off[1:]) for off in (plain, errors))
     np.testing.assert_allclose(orders, 2, atol=0.15)
@@ -86,7 +83,7 @@ def test_a_node_on_the_axis_sinks_under_what_lies_beyond_the_extent():
     body = KERNELS["triangles"].make(20, 1.0, grid.graded(0.0, 0.5, 2.0))
     assert body.radii[0] == 0
     assert body.weights[0] == 0
-    assert (body.compliance @ _smooth(body.radii))[0] == pytest.approx(3 * math.pi / 8, rel=1e-5)
+    assert (body.compliance @ smooth_pressure(body.radii))[0] == pytest.approx(3 * math.pi / 8, rel=1e-5)
 
 
 # --- what is refused ---
