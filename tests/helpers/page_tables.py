@@ -17,6 +17,6 @@ def data_of(page):
 
 
 def rows_of(file):
-    """Lines of a CSV file, each a mapping of its headers to its cells."""
+    """Lines of a CSV file but for its comments, each a mapping of its headers to its cells."""
     with file.open(newline="") as lines:
-        return list(csv.DictReader(lines))
+        return list(csv.DictReader(line for line in lines if not line.startswith("#")))

@@ -7,9 +7,11 @@ from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from types import SimpleNamespace
+from typing import get_args
 
 import numpy as np
 import pytest
+from agreement import apart, differing
 from scenes import hemisphere
 
 import halfspace
@@ -23,7 +25,8 @@ from fem_adhesion.finite_strain import scene as finite_strain_scene
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.scene import FARTHEST, LITTLE, ScenesBody, Stages, Windows, find_jumps, trace
 from fem_adhesion.finite_strain.settings import USUAL
-from fem_adhesion.finite_strain.traction import Convention
+from fem_adhesion.finite_strain.traction import convention_of
+from fem_adhesion.materials import TractionName
 from halfspace.accuracy.standing import Standing
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Chart, metric_for, moved, placed, transfer, undeformed_radius
@@ -33,6 +36,8 @@ from halfspace.equilibrium.search import energy_released
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.laws import Dlvo, Dugdale
 from halfspace.profiles import Hyperboloid
+
+TRACTIONS = get_args(TractionName)
 
 
 def scene(tabor=1.0, radius_ratio=100.0, poisson=0.3, traction="projected", **of_body):
@@ -67,7 +72,7 @@ def test_errors_of_points_hold_a_solution_of_higher_degree(path):
     Their cells grow more slowly: of the truth, too, the first on the axis is long where the window is farther out.
     """
     finest = Windows(ScenesBody(scene(), Discretisation(7, 0.5, growth=1.4)))
-    numbers = [getattr(path, f"{name}_error") for name in ("approach", "load", "central_gap", "contact_radius")]
+    numbers = [getattr(path, f"{name}_error") for name in OBSERVABLES]
     assert np.all(np.isfinite(numbers[:3]))
     np.testing.assert_array_equal(np.isfinite(numbers[3]), np.isfinite(path.contact_radius))
     assert max(numbers[1] / (1 + np.abs(path.load))) < 1e-3
@@ -92,10 +97,7 @@ def test_the_long_way_leads_to_the_same_events(path):
     assert path.settings["curve"]["linear"]
     assert not long.settings["curve"]["linear"]
     assert isinstance(long.segments[0].problem, FiniteStrainProblem)
-    for name, event in path.events.items():
-        for number in OBSERVABLES:
-            one, other = event.estimate(number), long.event(name).estimate(number)
-            assert np.isnan(one.value) or one.agrees(other), (name, number)
+    assert differing(path, long) == []
 
 
 def test_events_are_raised_from_the_linear_body(monkeypatch):
@@ -159,16 +161,6 @@ def test_energy_released_is_the_work_of_the_load():
 # --- spheres as small as their contact ---
 
 
-BLEND = 0.3 / (1 - 0.3)
-EXPLICIT = {
-    "projected": Convention(BLEND, BLEND),
-    "vertical": Convention(1.0, 0.0),
-    "normal": Convention(1.0, 1.0),
-    "reference": Convention(0.0, 0.0),
-}
-"""As in the documentation of `fem_adhesion.finite_strain.traction`."""
-
-
 @pytest.fixture(scope="module", params=["projected", "vertical"])
 def smallest(request):
     """The smallest sphere there is, by the blend and by a traction without an energy."""
@@ -181,7 +173,7 @@ def test_the_smallest_sphere_has_the_convention_asked_for(smallest):
     assert set(path.events) == {"pull_off", "zero_load"}
     problems = [segment.problem for segment in path.segments]
     problems += [event.problem for stage in path.stages for event in stage.values()]
-    assert {problem.convention for problem in problems} == {EXPLICIT[name]}
+    assert {problem.convention for problem in problems} == {convention_of(name, 0.3)}
 
 
 def test_pull_off_is_the_least_load_of_its_own_convention(smallest):
@@ -189,7 +181,7 @@ def test_pull_off_is_the_least_load_of_its_own_convention(smallest):
     name, path = smallest
     event, found = path.events["pull_off"], path.stages[-1]["pull_off"]
     loads, places = {}, {}
-    for other in EXPLICIT:
+    for other in TRACTIONS:
         on = ScenesBody(scene(0.1, 2.0, traction=other), Discretisation(5)).meshed(0.3, 3.0)
         x = transfer(found.problem, found.point.x, on)
         for part in (1.0, 0.98, 1.02) if other == name else (1.0,):
@@ -199,7 +191,7 @@ def test_pull_off_is_the_least_load_of_its_own_convention(smallest):
     assert loads[name, 1.0] < min(loads[name, 0.98], loads[name, 1.02])
     others = [
         abs(loads[other, 1.0] - loads[name, 1.0]) + abs(places[other, 1.0] - places[name, 1.0])
-        for other in EXPLICIT
+        for other in TRACTIONS
         if other != name
     ]
     assert min(others) > 2e-4 * abs(event.load)
@@ -208,9 +200,8 @@ def test_pull_off_is_the_least_load_of_its_own_convention(smallest):
 def test_jumps_alone_are_by_the_convention_asked_for(smallest):
     name, path = smallest
     found = find_jumps(scene(0.1, 2.0, traction=name), 1e-2)
-    curve, alone = (events["pull_off"] for events in (path.events, found))
-    assert abs(alone.load - curve.load) <= alone.load_error + curve.load_error
-    assert curve.load_error < 1e-3
+    assert apart(found["pull_off"], path.events["pull_off"], ["load"]) == []
+    assert path.events["pull_off"].load_error < 1e-3
 
 
 def test_a_tiny_sphere_is_traced_until_all_in_contact():
@@ -294,8 +285,7 @@ def test_pull_off_tends_to_that_of_the_linear_body():
     linear = asked.made_of(LinearElastic(asked.poisson))
     expected = convergence.trace(linear, rtol=1e-5, to_load=LITTLE).events["pull_off"]
     event = find_jumps(asked, 1e-4)["pull_off"]
-    assert abs(event.approach - expected.approach) <= event.approach_error + expected.approach_error
-    assert abs(event.load - expected.load) <= event.load_error + expected.load_error
+    assert apart(event, expected, ("approach", "load")) == []
 
 
 # --- what the traction is counted per ---
@@ -345,19 +335,6 @@ def test_ill_posed_equations_are_refused_before_any_work(solve, tabor, radius_ra
         solve(scene(tabor, radius_ratio, **options), 1e-3)
 
 
-@pytest.mark.parametrize(("radius_ratio", "told"), [(38.0, True), (50.0, False)])
-def test_what_is_lost_close_to_ill_posedness_says_so(radius_ratio, told, monkeypatch):
-    def lost(*_, **__):
-        raise NotConverged("the path ends")
-
-    monkeypatch.setattr(finite_strain_scene, "climb", lost)
-    why = (
-        r"= 38 is close to its limit 34.5 .* leaves 4\.\d% of .* \(the path ends\); take .* radius_ratio above 47\.\d$"
-    )
-    with pytest.raises(NotConverged, match=why if told else "^the path ends$"):
-        trace(scene(3.0, radius_ratio), 1e-3)
-
-
 @pytest.fixture
 def rungs(monkeypatch):
     """Rungs on which a curve is traced, in order."""
@@ -366,21 +343,31 @@ def rungs(monkeypatch):
     return found
 
 
+NEAR = r"= 38 is close to its limit 34.5 .* leaves 4\.\d% of .* \(lost\); take .* radius_ratio above 47\.\d$"
+TINY = 0.7, 2.0, 0.45
+
+
 @pytest.mark.parametrize(
-    ("error", "told"),
+    ("asked", "error", "told"),
     [
-        (ContactTooWide, "= 2 is below 2.39 for tabor 0.7 .*: the sphere, of radius 1.69 beta, is drawn flat.*lost"),
-        (NotConverged, "= 2 is below 2.39 for tabor 0.7 .* drawn flat, or nearly so, .*lost"),
-        (IllPosed, "= 2 is close to its limit 1.15 .* leaves 24.1% .*lost.* or radius_ratio above 2.39"),
+        ((3.0, 38.0), NotConverged, NEAR),
+        ((3.0, 50.0), NotConverged, "^lost$"),
+        (
+            TINY,
+            ContactTooWide,
+            "= 2 is below 2.39 for tabor 0.7 .*: the sphere, of radius 1.69 beta, is drawn flat.*lost",
+        ),
+        (TINY, NotConverged, "= 2 is below 2.39 for tabor 0.7 .* drawn flat, or nearly so, .*lost"),
+        (TINY, IllPosed, "= 2 is close to its limit 1.15 .* leaves 24.1% .*lost.* or radius_ratio above 2.39"),
     ],
 )
-def test_what_too_small_a_sphere_does_not_find_says_so(error, told, monkeypatch):
+def test_what_is_lost_close_to_a_limit_of_the_sphere_says_so(asked, error, told, monkeypatch):
     def lost(*_, **__):
         raise error("lost")
 
     monkeypatch.setattr(finite_strain_scene, "climb", lost)
     with pytest.raises(error, match=told):
-        trace(scene(0.7, 2.0, 0.45), 1e-3)
+        trace(scene(*asked), 1e-3)
 
 
 @pytest.mark.parametrize(
@@ -444,10 +431,8 @@ def outside(path, asked, how):
     for name in ("pull_off", "jump_on", "jump_off", "zero_load"):
         event, state = path.events[name], path.stages[-1][name]
         truth = moved(state, stage(state).problem).point.observables
-        for quantity, value in zip(("approach", "load", "central_gap", "contact_radius"), truth, strict=True):
-            told = event.estimate(quantity)
-            if abs(told.value - value) > told.error:
-                found.append((name, quantity))
+        told = [event.estimate(quantity) for quantity in OBSERVABLES]
+        found += [(name, one) for one, value in zip(told, truth, strict=True) if abs(one.value - value) > one.error]
     return found
 
 

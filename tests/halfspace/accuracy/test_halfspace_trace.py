@@ -1,12 +1,12 @@
 """The half-space curve and its events against converged references, limits, and itself."""
 
-import csv
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from page_tables import rows_of
 from references import charted_rung
 
 import halfspace
@@ -27,8 +27,7 @@ DATA = Path(__file__).parents[2] / "data"
 
 
 def _reference():
-    with (DATA / "reference_events.csv").open() as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    rows = rows_of(DATA / "reference_events.csv")
     return [{key: value if key == "event" else float(value or "nan") for key, value in row.items()} for row in rows]
 
 

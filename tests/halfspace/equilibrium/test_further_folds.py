@@ -130,8 +130,7 @@ def test_elements_find_the_same_folds_and_jumps(winding):
     ours, theirs = cycle(winding), cycle(elements)
     assert list(ours.jumps) == list(theirs.jumps)
     for name, jump in ours.jumps.items():
-        other = theirs.jumps[name]
-        assert abs(jump.energy.value - other.energy.value) <= jump.energy.error + other.energy.error, name
+        assert jump.energy.agrees(theirs.jumps[name].energy), name
 
 
 def test_a_solver_that_misses_folds_disagrees():

@@ -1,6 +1,5 @@
 """Laws and profiles as parts: what each states of itself, and what a contact makes of it, against closed forms."""
 
-import csv
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from agreement import differing
+from page_tables import rows_of
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import beta
@@ -158,7 +158,7 @@ def test_a_part_that_cannot_be_is_refused_in_one_line(make, message):
     assert "\n" not in str(refused.value)
 
 
-REFERENCES = list(csv.DictReader((Path(__file__).parents[2] / "data" / "laws_events.csv").read_text().splitlines()))
+REFERENCES = rows_of(Path(__file__).parents[2] / "data" / "laws_events.csv")
 PARTS = {
     "power n=4 m=10": {"law": PowerLaw(4, 10)},
     "power n=3 m=9": {},

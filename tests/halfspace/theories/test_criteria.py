@@ -1,27 +1,20 @@
 """Criteria for jumping on, against the paper and against converged jumps."""
 
-import csv
 from pathlib import Path
 
 import numpy as np
 import pytest
+from page_tables import rows_of
 
 from halfspace.theories import criteria
 
 DATA = Path(__file__).parents[2] / "data"
-JUMPS = {  # tabor: alpha*, H0, the jump_on rows of reference_events.csv
-    1.0: (-1.629216712, 0.646994321),
-    2.0: (-2.551914080, 1.262963126),
-    5.0: (-4.263582407, 2.362010939),
-}
-TABOR = np.array(list(JUMPS))
-APPROACH, GAP = np.array(list(JUMPS.values())).T
+JUMPS = [row for row in rows_of(DATA / "reference_events.csv") if row["event"] == "jump_on"]
+TABOR, APPROACH, GAP = (np.array([float(row[name]) for row in JUMPS]) for name in ("tabor", "approach", "central_gap"))
 
 
 def test_attard_and_parkers_load_to_its_last_printed_digit():
-    with (DATA / "greenwood1997_table2.csv").open() as file:
-        rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        row = next(row for row in rows if row["quantity"].endswith("_AP"))
+    row = next(row for row in rows_of(DATA / "greenwood1997_table2.csv") if row["quantity"].endswith("_AP"))
     printed = {float(key[3:]): value for key, value in row.items() if key.startswith("mu=")}
     loads = criteria.undeformed_load(criteria.closed_gap(list(printed), criteria.ATTARD_PARKER))
     assert [f"{-load:.3f}" for load in loads] == list(printed.values())

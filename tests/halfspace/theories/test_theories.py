@@ -1,11 +1,11 @@
 """Theories against the paper's table, against integrals done another way, and against each other in their limits."""
 
-import csv
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from page_tables import rows_of
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -17,12 +17,7 @@ from halfspace.theories.maugis import MaugisDugdale
 DATA = Path(__file__).parents[2] / "data"
 
 
-def _rows(name):
-    with (DATA / name).open() as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
-
-
-@pytest.mark.parametrize("row", _rows("greenwood1997_table1.csv"), ids=lambda row: row["alpha_star"])
+@pytest.mark.parametrize("row", rows_of(DATA / "greenwood1997_table1.csv"), ids=lambda row: row["alpha_star"])
 def test_table_1_to_its_last_printed_digit(row):
     alpha, printed = float(row["alpha_star"]), row["f_over_alpha_star_1_5"]
     assert f"{dmt.force_excess(alpha) / alpha**1.5:.3f}" == f"{float(printed):.3f}"
@@ -193,7 +188,7 @@ def test_carpicks_transition_parameter_is_as_printed():
 
 def test_matched_maugis_against_the_converged_contact():
     """The best constant tension errs by at most 5.5 % in the pull-off force, most where the theories change over."""
-    for row in _rows("reference_events.csv"):
+    for row in rows_of(DATA / "reference_events.csv"):
         if row["event"] == "pull_off":
             theory = MaugisDugdale.matched(float(row["tabor"]))
             assert theory.pull_off().load == pytest.approx(float(row["load"]), rel=0.055)
