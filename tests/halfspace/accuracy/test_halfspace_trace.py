@@ -163,8 +163,6 @@ def test_the_margin_is_that_of_the_stiffest_apparatus():
     """By a golden search under prescribed central gaps, in `fem_adhesion.common.fold_birth`."""
     path = halfspace.trace(0.69, rtol=1e-8)
     assert path.margin.value == pytest.approx(1 / critical_stiffness(0.69), rel=1e-5, abs=0)
-    assert cycle(path, 1 / (path.margin.value * 1.01)) is not None
-    assert cycle(path, 1 / (path.margin.value * 0.99)) is None
     assert halfspace.trace(0.5).margin is halfspace.trace(1.0).margin is None
     assert (halfspace.trace(0.5).jumps, halfspace.trace(1.0).jumps) == (False, True)
 

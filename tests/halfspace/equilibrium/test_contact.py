@@ -26,10 +26,7 @@ def problem():
 @pytest.fixture(scope="module")
 def touching(problem):
     """A state on the unstable branch, with a contact radius of 0.3 beta."""
-    x = problem.undeformed(-5.0)
-    for gap in (4, 3, 2, 1, 0.6, 0.4, 0.2, 0.1):
-        x = newton.solve(problem, x, newton.central_gap(gap)).x
-    return x
+    return approached(problem, 0.1)
 
 
 @pytest.mark.parametrize("follows", [False, True])
@@ -83,9 +80,7 @@ def test_a_contact_edge_is_prescribed_where_two_cells_meet():
     """There the polynomials of the gap leap by their error, and Newton's method would go to and fro between them."""
     operator = compliance.panels(grid.graded(1.0, 0.05, 100.0), 5)
     problem = ContactProblem(operator, 2.0)
-    x = problem.undeformed(-7.0)
-    for gap in (4, 3, 2, 1, 0.6, 0.4, 0.2, 0.1, 0.05):
-        x = newton.solve(problem, x, newton.central_gap(gap)).x
+    x = approached(problem, 0.05)
     for radius in (1.0, 1.4, 1.8, 2.2, 2.5):
         x = newton.solve(problem, x, newton.contact_radius(radius)).x
     ends = operator.cells[(operator.cells > 0.4) & (operator.cells < 2.5)]
