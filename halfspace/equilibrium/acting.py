@@ -146,7 +146,8 @@ def _edge(body: SurfaceNodes, H: Array, edge: float) -> float:
         return body.extent
     radii = [0.0, *body.radii.tolist(), body.extent]
     below, above = radii[inside[-1] + 1 :][:2] if inside.size else radii[:2]
-    radius = by_straight_lines(body.radii, H, edge) or above
+    by_straight_line = np.interp(edge, H[inside[-1] :][:2], body.radii[inside[-1] :][:2]) if inside.size else 0.0
+    radius = float(by_straight_line) or above
     for _ in range(TRIES):
         gap, slope = body.continuous_value(radius, H)
         step = (edge - gap) / slope if slope else math.inf
@@ -160,9 +161,3 @@ def _edge(body: SurfaceNodes, H: Array, edge: float) -> float:
 
 
 TRIES, PINNED = 6, 1e-8  # Newton's steps towards a contact edge; part of the nodes' distance: the next is its square
-
-
-def by_straight_lines(radii: Array, H: Array, gap: float) -> float:
-    """Largest radius at which the gap is about that, between two nodes; 0 if it is wider at all."""
-    closer = np.flatnonzero(gap > H)
-    return float(np.interp(gap, H[closer[-1] :][:2], radii[closer[-1] :][:2])) if closer.size else 0.0
