@@ -57,6 +57,9 @@ class ScaleSettings:
     separated: float = 10.0  # eps, least gap at which surfaces count as separated
 
 
+HOW = ScaleSettings()
+
+
 @dataclass(frozen=True)
 class Scales:
     """Lengths of one contact.
@@ -71,15 +74,12 @@ class Scales:
         Of the undeformed surfaces.
     body : LayeredBody, optional
         Strata on a base; what else is elastic yields as a half-space of E* to waves as short as the attraction is wide.
-    how : ScaleSettings, optional
-        Numbers by which the lengths are chosen.
     """
 
     tabor: float
     law: Law = LENNARD_JONES
     profile: Surface = PARABOLOID
     body: LayeredBody | None = None
-    how: ScaleSettings = ScaleSettings()
 
     @cached_property
     def of_contact(self) -> Scales:
@@ -136,7 +136,7 @@ class Scales:
         A gap beyond the edge by H has opened over some distance d, so that a tension which falls within a part of H
         does within that part of d.
         """
-        return float(min(1.0, self.how.sudden / self._steepness[1].max()) ** self.how.slower)
+        return float(min(1.0, HOW.sudden / self._steepness[1].max()) ** HOW.slower)
 
     @cached_property
     def _unbroken(self) -> float:
@@ -147,7 +147,7 @@ class Scales:
         """
         load = -GAPS * self.law.pressure(GAPS, 1.0)
         top = np.minimum(np.maximum.accumulate(load), np.maximum.accumulate(load[::-1])[::-1])
-        return float(min(1.0, self.how.shallow * load.max() / max((top - load).max(), TINY)) ** self.how.broken)
+        return float(min(1.0, HOW.shallow * load.max() / max((top - load).max(), TINY)) ** HOW.broken)
 
     @cached_property
     def _steepness(self) -> tuple[Array, Array]:
@@ -164,7 +164,7 @@ class Scales:
     @property
     def steps(self) -> bool:
         """Whether the tension ends by a step, if only by one so wide that cells grow as by any other law."""
-        return bool(self._steepness[1].max() > self.how.stepped)
+        return bool(self._steepness[1].max() > HOW.stepped)
 
     @property
     def _rigid_width(self) -> float:
@@ -175,12 +175,12 @@ class Scales:
     @cached_property
     def flat(self) -> float:
         """How many times as many widths of its edge as on a paraboloid a rigid contact is wide: k/2 on u^k."""
-        return min(max(1.0, self._touching_radius / self._rigid_width), self.how.flattest)
+        return min(max(1.0, self._touching_radius / self._rigid_width), HOW.flattest)
 
     @cached_property
     def _touching_radius(self) -> float:
         """Radius of a rigid contact: where the undeformed gap has opened by as much as the tension rises over."""
-        return self.radius_at(self.how.rise * math.sqrt(LENNARD_JONES.stiffness / self.law.stiffness))
+        return self.radius_at(HOW.rise * math.sqrt(LENNARD_JONES.stiffness / self.law.stiffness))
 
     def widest_radius(self, to_load: float) -> float:
         """Contact radius that a curve up to a load hardly exceeds: a soft and a rigid contact's together."""
@@ -210,7 +210,7 @@ class Scales:
 
     def _undeformed(self, density: Callable[[Array, float], Array], gap: float) -> float:
         """Integral of the law's pressure or slope over undeformed surfaces at a central gap, in R dgamma."""
-        r = self.radius_at(max(gap, self.how.rise)) * np.exp(LOGARITHMS)
+        r = self.radius_at(max(gap, HOW.rise)) * np.exp(LOGARITHMS)
         r = r[r < self.profile.end]
         return 2 * np.pi * STEP * float(r**2 @ density(gap + self.tabor * self.profile.height(r), self.tabor))
 
@@ -218,7 +218,7 @@ class Scales:
     def largest_load(self) -> float:
         """Size of the tensions in R dgamma: Bradley's 2 pi, but what others a profile has."""
         found = self.rigid_tension if self.tabor < 1 else -4 / 3 * jkr_least_load(self.profile)
-        return max(found, self.how.least_load) if abs(math.log2(found / BRADLEY)) > 1 else BRADLEY
+        return max(found, HOW.least_load) if abs(math.log2(found / BRADLEY)) > 1 else BRADLEY
 
     def tension_beyond(self, r: float) -> float:
         """Tension beyond a radius in beta, in R dgamma; 0 where the surface or the law ends.
@@ -237,9 +237,9 @@ class Scales:
         beyond = self.tension_beyond(r) / self.rigid_tension
         if not beyond:
             return r
-        farther = min(max(1.0, beyond / self.how.left) ** (1 / power), self.how.farthest)
-        if beyond > self.how.most_left * farther**power:
-            least = math.log(beyond / self.how.most_left) / math.log(self.how.farthest)
+        farther = min(max(1.0, beyond / HOW.left) ** (1 / power), HOW.farthest)
+        if beyond > HOW.most_left * farther**power:
+            least = math.log(beyond / HOW.most_left) / math.log(HOW.farthest)
             raise InputError(
                 f"{self.law} on {self.profile}: the load beyond r falls as r^-{power:.2g} alone, limit on layers: "
                 f"r^-{least:.2g}; take a law or a profile that rises faster"
@@ -265,12 +265,12 @@ class Scales:
         powers = np.array([self.law.decay, 1.0]) * self._growth
         if np.allclose(powers, np.round(powers), rtol=0, atol=1e-4):
             return 1.0
-        return float(max(self.how.farther, self.how.untold ** (-1 / (powers[0] - 2)) / self.how.crowd))
+        return float(max(HOW.farther, HOW.untold ** (-1 / (powers[0] - 2)) / HOW.crowd))
 
     @property
     def _growth(self) -> float:
         """Exponent of the profile's height far out."""
-        r = np.array(self.how.far_out)
+        r = np.array(HOW.far_out)
         return float(r * self.profile.slope(r) / self.profile.height(r))
 
     @cached_property
@@ -281,7 +281,7 @@ class Scales:
     @cached_property
     def separated_approach(self) -> float:
         """Approach in eps at which a half-space is separated alone; left of jump_off, -1.61 mu in the JKR limit."""
-        apart = max(self.how.separated, 3 * self.law.range(0.1))
+        apart = max(HOW.separated, 3 * self.law.range(0.1))
         return -apart - self.tabor * max(2.0, -1.2 * jkr_fold(self.profile))
 
     def radius_at(self, height: float) -> float:
