@@ -165,16 +165,15 @@ class FiniteStrainProblem(Valued):
         """Nothing: where the contact spreads over the flank the gaps vanish, and the deflection is as steep."""
         return np.zeros_like(radii)
 
-    def state_from_surface(self, state: Array, near: Array | None = None) -> Array:
+    def state_from_surface(self, state: Array) -> Array:
         """State of the body under the pressure that the gaps of an interface's state make, as a start.
 
-        From the undeformed body, or from a state near, by the body's tangent alone: with that of the forces that follow
-        the surface, too, first steps may be ten times as long. The first step gives the linear body.
+        From the undeformed body, by the body's tangent alone: with that of the forces that follow the surface, too,
+        first steps may be ten times as long. The first step gives the linear body.
         """
         law, mu, how = self.interface.law, self.tabor, self.held.settings
         P, Phi = law.pressure(state[:-2], mu), law.energy(state[:-2], mu)
-        y = np.zeros(self.held.size) if near is None else near[:-1]
-        m = self.surface.unknowns.size
+        y, m = np.zeros(self.held.size), self.surface.unknowns.size
         for _ in range(how.start_steps):
             solve = self.held.solver(y, np.zeros((m, m + 1)), np.eye(1, m + 1, m)[0])
             dy = -solve(np.append(self._unbalanced(y, P, Phi), 0.0), NEWTON.rough)[:-1]

@@ -54,11 +54,9 @@ class Gridded(Protocol):
     @property
     def length(self) -> float:
         """Length in beta of the cells at the contact edge."""
-        ...
 
     def standing(self, radius: float) -> Chart:
         """Chart that stands still, its cells finest at a contact radius in beta, or on the axis."""
-        ...
 
 
 @dataclass(frozen=True, eq=False, repr=False)

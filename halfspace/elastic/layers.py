@@ -89,12 +89,10 @@ class LayeredBody(Protocol):
     @property
     def strata(self) -> tuple[Stratum, ...]:
         """From the surface down."""
-        ...
 
     @property
     def base(self) -> Foundation | Substrate:
         """What carries the last: rigid and bonded to it, rigid and without friction, or elastic and bonded."""
-        ...
 
 
 @dataclass(frozen=True)

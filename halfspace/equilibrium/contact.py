@@ -51,7 +51,6 @@ class Solver(Protocol):
 
     def __call__(self, rhs: Array, accuracy: float = 0.0, /) -> Array:
         """Solution; one that is iterated for may stop at a relative accuracy, 0 for all digits."""
-        ...
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -99,7 +98,7 @@ class ContactProblem(Valued):
         """Return the state itself."""
         return x
 
-    def state_from_surface(self, state: Array, near: Array | None = None) -> Array:  # noqa: ARG002 (it is all there is)
+    def state_from_surface(self, state: Array) -> Array:
         """Return the state itself."""
         return state
 

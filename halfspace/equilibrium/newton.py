@@ -33,90 +33,69 @@ class NewtonSettings:
 NEWTON = NewtonSettings()
 
 
-class Equilibrium(Protocol):
+class Traceable(Protocol):
     """What the solver, the path and the events need to know of a contact problem, condensed or not."""
 
     def residual(self, x: Array) -> Array:
         """Left-hand sides of all equations but the control."""
-        ...
 
     def along(self, x: Array, v: Array) -> Array:
         """Derivative of the residual along a direction."""
-        ...
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Solver for the linearised equations with the control row below them; all nan if these are singular."""
-        ...
 
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap, contact radius."""
-        ...
 
     def weighted_observables(self, x: Array, weights: Array) -> float:
         """Weighted sum of the observables."""
-        ...
 
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative of a weighted sum of the observables."""
-        ...
 
     def rates(self, x: Array, v: Array) -> Array:
         """Derivatives of the observables along a direction, 0 of one that is nan."""
-        ...
 
     def longest_step(self, x: Array, dx: Array) -> float:
         """Fraction of a step that keeps gaps positive."""
-        ...
 
     def size(self, x: Array, dx: Array) -> float:
         """Relative size of a step."""
-        ...
 
     def misfit(self, x: Array, residual: Array) -> float:
         """Norm of the residual relative to the state."""
-        ...
 
     def require_resolution(self, x: Array) -> None:
         """Raise GridTooCoarse for a state that the discretisation cannot carry."""
-        ...
 
-
-class Traceable(Equilibrium, Protocol):
-    """What a whole curve, its stability, its jumps and its change of discretisation need beyond that."""
+    # What a whole curve, its stability, its jumps and its change of discretisation need beyond that.
 
     @property
     def tabor(self) -> float:
         """Tabor parameter mu."""
-        ...
 
     @property
     def interface(self) -> ContactProblem:
         """Surface law, profile and grid of the surface: the problem itself if that is all its state is made of."""
-        ...
 
     def surface_state(self, x: Array) -> Array:
         """State as `interface` knows it: gaps, approach, scale of the grid."""
-        ...
 
-    def state_from_surface(self, state: Array, near: Array | None = None) -> Array:
-        """State whose surface is about that of a state of `interface`, as a start, from one near it if there is one."""
-        ...
+    def state_from_surface(self, state: Array) -> Array:
+        """State whose surface is about that of a state of `interface`, as a start."""
 
     def rough(self, radii: Array, approach: float) -> Array:
         """Part of the gaps in eps that is known at any radii; what is left of them is smooth within the cells."""
-        ...
 
     def undeformed(self, approach: float) -> Array:
         """State without deformation, as a start for Newton's method."""
-        ...
 
     def energy(self, x: Array) -> float:
         """Total potential energy in R dgamma eps."""
-        ...
 
     def negative_directions(self, x: Array) -> int:
         """Number of directions in which the energy falls at fixed approach; 0 means stable under fixed grips."""
-        ...
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -181,14 +160,14 @@ class Solution(Valued):
 
 
 def solve(
-    problem: Equilibrium, start: Array, control: Control, *, tolerance: float = 1e-8, max_iterations: int = 40
+    problem: Traceable, start: Array, control: Control, *, tolerance: float = 1e-8, max_iterations: int = 40
 ) -> Solution:
     """Solve the equilibrium under a control as of `attempt`, or raise NotConverged."""
     return required(attempt(problem, start, control, tolerance=tolerance, max_iterations=max_iterations))
 
 
 def attempt(
-    problem: Equilibrium,
+    problem: Traceable,
     start: Array,
     control: Control,
     *,
@@ -228,7 +207,7 @@ def attempt(
     )
 
 
-def tangent(problem: Equilibrium, solution: Solution) -> Array:
+def tangent(problem: Traceable, solution: Solution) -> Array:
     """Direction of the path at a solution in which the weighted observables of its control change by 1.
 
     The factors of the last step give it to the size of that step; what they leave is solved for by them once again.
@@ -239,7 +218,7 @@ def tangent(problem: Equilibrium, solution: Solution) -> Array:
 
 
 def turning_point(
-    problem: Equilibrium, start: Array, weights: Array, direction: Array, reach: float
+    problem: Traceable, start: Array, weights: Array, direction: Array, reach: float
 ) -> tuple[Solution, float, float] | Unsolved:
     """Solve for the state near a start at which a weighted sum of the observables is stationary along the path.
 
@@ -281,7 +260,7 @@ def turning_point(
 class _Tangent(Valued):
     """Tangent of the path at a state, B t = e, B the Jacobian bordered by the arclength's gradient."""
 
-    problem: Equilibrium
+    problem: Traceable
     x: Array
     weights: Array
     direction: Array
@@ -333,7 +312,7 @@ def _last(size: int) -> Array:
     return unit
 
 
-def _damped(problem: Equilibrium, x: Array, F: Array, dx: Array, control: Control) -> tuple[Array, Array, float]:
+def _damped(problem: Traceable, x: Array, F: Array, dx: Array, control: Control) -> tuple[Array, Array, float]:
     """Take the longest of the steps f dx, f/2 dx ... that keeps gaps positive and the residual in bounds, 0 if none.
 
     Where the surfaces repel, the law is steep and convex: a step that overshoots raises the residual once and then
@@ -350,10 +329,10 @@ def _damped(problem: Equilibrium, x: Array, F: Array, dx: Array, control: Contro
     return x, F, 0.0
 
 
-def _equations(problem: Equilibrium, x: Array, control: Control) -> Array:
+def _equations(problem: Traceable, x: Array, control: Control) -> Array:
     return appended(problem.residual(x), problem.weighted_observables(x, control.weights) - control.target)
 
 
-def _misfit(problem: Equilibrium, x: Array, F: Array) -> float:
+def _misfit(problem: Traceable, x: Array, F: Array) -> float:
     """Size of the equations' left-hand sides, the problem's relative to its gaps and the control's as it is."""
     return math.hypot(problem.misfit(x, F[:-1]), float(F[-1]))

@@ -16,7 +16,7 @@ import numpy as np
 
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
-from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
+from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.errors import ContactTooWide, GridTooCoarse, IllPosed, Unsolved
 from halfspace.values import Array, Valued
 
@@ -111,7 +111,7 @@ class Steps:
 
 
 def make_point(
-    problem: Equilibrium, solution: newton.Solution, metric: Metric, direction: Array, arclength: float
+    problem: Traceable, solution: newton.Solution, metric: Metric, direction: Array, arclength: float
 ) -> Point:
     """Attach the unit tangent to a solution, oriented so that it has a positive component along `direction`.
 
@@ -125,7 +125,7 @@ def make_point(
 
 
 def solved_point(
-    problem: Equilibrium,
+    problem: Traceable,
     start: Array,
     control: Control,
     metric: Metric,
@@ -221,7 +221,7 @@ def follow(
     return Unsolved(f"the path did not end within {max_points} points; allow more points or longer steps")
 
 
-def _carried(problem: Equilibrium, point: Point) -> bool:
+def _carried(problem: Traceable, point: Point) -> bool:
     """Whether a discretisation is wide and fine enough for a point, and its equations well-posed there."""
     try:
         problem.require_resolution(point.x)

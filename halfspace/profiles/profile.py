@@ -51,7 +51,6 @@ class Profile(Protocol):
 
     def surface(self, tabor: float) -> Surface:
         """Heights in beta^2/R against radii in beta at a Tabor parameter."""
-        ...
 
 
 def require_profile(profile: Profile) -> Profile:
