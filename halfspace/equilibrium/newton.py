@@ -145,15 +145,14 @@ def _single(observable: int, value: float) -> Control:
 class Solution(Valued):
     """A converged state x, its observables (4,), approach, load, central gap and contact radius, and its control.
 
-    The update is the relative size of the last Newton step; the error left is of the order of its square, or less than
-    `NEWTON.left` of the tolerance. Astray is that of the first, by how much the start was off. The solver is for the
-    linearised equations, bordered by the control, at the state or very near to it.
+    The error left is of the order of the square of the last Newton step, or less than `NEWTON.left` of the tolerance.
+    Astray is the relative size of the first, by how much the start was off. The solver is for the linearised equations,
+    bordered by the control, at the state or very near to it.
     """
 
     x: Array
     observables: Array
     iterations: int
-    update: float
     control: Control
     solver: Solver
     astray: float = 0.0
@@ -197,7 +196,7 @@ def attempt(
         astray = astray or update
         x, F, damping = _damped(problem, x, F, dx, control)
         if damping == 1 and update < tolerance and update * max(update, accuracy) < NEWTON.left * tolerance:
-            return Solution(x, problem.observables(x), iteration, update, control, solver, astray)
+            return Solution(x, problem.observables(x), iteration, control, solver, astray)
         if not damping or update > contraction * last:
             break
         last, before = before, update
@@ -250,7 +249,7 @@ def turning_point(
         x = x + damping * dx
         rounding = last / 2 < update < NEWTON.rounded
         if near and damping == 1 and (update < NEWTON.turned or rounding):
-            solution = Solution(x, problem.observables(x), iteration, update, Control(direction, 0.0), here.solver)
+            solution = Solution(x, problem.observables(x), iteration, Control(direction, 0.0), here.solver)
             return solution, slope, abs(step) + rounding * before
         last, before = update, abs(step) if near else 0.0
     return Unsolved("the path does not turn here; take a smaller rtol")

@@ -143,11 +143,16 @@ def test_a_table_that_ends_with_zeros_ends_at_the_first_of_them(tmp_path):
     assert differing(rough, fine, ["load"]) == []
 
 
+def with_valley(tmp_path, place, width):
+    """A table of the 3-9 law with a valley about a gap."""
+    h = np.append(np.linspace(0.753, 4, 131), np.geomspace(4.05, 60, 60))
+    tension = (h**-3 - h**-9) * (1 - 0.95 * np.exp(-(((h - place) / width) ** 2)))
+    return laws.Tabulated(written(tmp_path / "law.csv", h, tension))
+
+
 def test_a_narrow_valley_is_resolved_or_refused_before_any_work(tmp_path):
     """On cells as long as the 3-9 law's the curve wound once for each node, at Tabor parameter 3 without an end."""
-    h = np.append(np.linspace(0.753, 4, 131), np.geomspace(4.05, 60, 60))
-    tension = (h**-3 - h**-9) * (1 - 0.95 * np.exp(-(((h - 1.7) / 0.25) ** 2)))
-    law = laws.Tabulated(written(tmp_path / "law.csv", h, tension))
+    law = with_valley(tmp_path, 1.7, 0.25)
     events = halfspace.trace(2.0, law=law, rtol=1e-1).events
     assert list(events) == ["pull_off", "jump_on", "fold_2", "fold_3", "jump_off", "zero_load"]
     with pytest.raises(InputError, match=r"rises again at H = 1.07.* limit: 60; take a smaller tabor than 3"):
@@ -156,9 +161,7 @@ def test_a_narrow_valley_is_resolved_or_refused_before_any_work(tmp_path):
 
 def test_estimates_hold_where_the_third_derivative_leaps(tmp_path):
     """Errors fall as a power of the nodes: a pair more leaves so much that jumps were 2.3 times outside at 1e-5."""
-    h = np.append(np.linspace(0.753, 4, 131), np.geomspace(4.05, 60, 60))
-    tension = (h**-3 - h**-9) * (1 - 0.95 * np.exp(-(((h - 2.5) / 0.7) ** 2)))
-    law = laws.Tabulated(written(tmp_path / "law.csv", h, tension))
+    law = with_valley(tmp_path, 2.5, 0.7)
     path, truth = (halfspace.trace(3.0, law=law, rtol=rtol) for rtol in (1e-5, 1e-8))
     for name, event in path.events.items():
         for quantity in ("approach", "load"):
