@@ -36,11 +36,6 @@ class Operator(ABC):
     def axis_row(self) -> Array:
         """Row (q,) that interpolates nodal values on the axis."""
 
-    @property
-    def edge_row(self) -> Array:
-        """Row (q,) that interpolates nodal values at the contact edge of a grid that follows it."""
-        raise AttributeError("the grid does not follow the contact; use interpolation at its radius")
-
     @abstractmethod
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
@@ -49,13 +44,20 @@ class Operator(ABC):
     def nodes(self, scale: float) -> SurfaceNodes:
         """Nodes at a contact radius in beta, without the work that a compliance may take."""
 
-    @abstractmethod
-    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
-        """Derivatives by the scale of radii, weights and the deflection under a pressure, each (q,)."""
-
     def root(self, scale: float) -> Array:
         """L, (q, m), with L L^T the symmetric part of w^(1/2) C w^(-1/2)."""
         return self.at(scale).compliance_root
+
+    # Of a grid that follows the contact
+
+    @property
+    def edge_row(self) -> Array:
+        """Row (q,) that interpolates nodal values at the contact edge."""
+        raise NotImplementedError
+
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
+        """Derivatives by the scale of radii, weights and the deflection under a pressure, each (q,)."""
+        raise NotImplementedError
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -217,11 +219,6 @@ class ElasticOperator(SurfaceNodes, Operator):
     def nodes(self, scale: float) -> SurfaceNodes:  # noqa: ARG002
         """Return the operator itself: its nodes are the same at every contact radius."""
         return self
-
-    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:  # noqa: ARG002
-        """Derivatives by the scale of radii, weights and deflection: zero."""
-        zero = np.zeros(self.radii.size)
-        return zero, zero, zero
 
     @cached_property
     def compliance_root(self) -> Array:
