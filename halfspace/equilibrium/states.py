@@ -73,11 +73,6 @@ class Ladder(Valued):
         others = [other and other.everywhere for other in (self.twin, self.coarser)]
         return Ladder(tuple(differing), others[0], rule, others[1])
 
-    @property
-    def told(self) -> bool:
-        """Whether there is anything to compare with."""
-        return len(self.chain) > 1
-
     def chains(self, fine: T, again: Callable[[Stage, T], T | Unsolved]) -> list[list[T]] | Unsolved:
         """Chains to a state of the finest discretisation, where `again` solves for it on another one."""
         chain = [fine]
@@ -194,8 +189,6 @@ class FinestCurve(Valued):
         """
         if condition == FOLD:
             return list(self.folds)
-        if not self.ladder.told:
-            return [turn for _, turn in turns(self.traced, condition) if turn]
         return [chains[0][-1] for chains in confirmed(turns(self.traced, condition), self._again)[0]]
 
     def _again(self, turn: Located) -> Chains | Unsolved:
@@ -284,11 +277,8 @@ class FinestCurve(Valued):
         return any(problem is one for one in self.left_behind)
 
     def _errors(self, problem: Traceable, point: Point) -> Array:
-        """Errors of the observables in the plane across the path, (4,); nan where there is nothing to compare with."""
-        ladder = self.ladder.along
-        if not ladder.told:
-            return np.full(4, np.nan)
-        here = Located(PLANE, problem, point, 1.0)
+        """Errors of the observables in the plane across the path, (4,)."""
+        ladder, here = self.ladder.along, Located(PLANE, problem, point, 1.0)
         chains = not self._is_left_behind(problem) and ladder.chains(here, placed)
         if not chains:  # another discretisation does not have it
             return np.full(4, np.inf)
@@ -323,20 +313,18 @@ def require_coordinate(name: str) -> str:
 
 
 def finest_curve(segments: Sequence[Segment], ladder: Ladder, metric: Metric, folds: Sequence[Located]) -> FinestCurve:
-    """Solve for the points of a curve on the finest discretisation; without any the curve stays as it is.
+    """Solve for the points of a curve on the finest discretisation.
 
     The segments are of the curve on any discretisation. A point that cannot be solved for there stays where it is.
     """
-    traced = tuple(segments)
-    if not ladder.told:
-        return FinestCurve(traced, traced, ladder, metric, folds)
     found, left_behind = list[tuple[Traceable, Point]](), dict[int, Traceable]()
     for problem, point in ((segment.problem, point) for segment in segments for point in segment.points):
         there = placed(ladder.finest.everywhere, Located(PLANE, problem, point, 1.0))
         found.append((there.problem, there.point) if there else (problem, point))
         if not there:
             left_behind[id(problem)] = problem
-    return FinestCurve(measured_runs(found, metric), traced, ladder, metric, folds, tuple(left_behind.values()))
+    left = tuple(left_behind.values())
+    return FinestCurve(measured_runs(found, metric), tuple(segments), ladder, metric, folds, left)
 
 
 def measured_runs(points: Sequence[tuple[Traceable, Point]], metric: Metric) -> tuple[Segment, ...]:
