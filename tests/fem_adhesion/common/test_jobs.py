@@ -55,7 +55,85 @@ def threads(_):
     return os.environ["OPENBLAS_NUM_THREADS"]
 
 
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_every_item_comes_once_with_its_result(jobs):
+    assert sorted(stream(square, range(20), jobs=jobs)) == [(x, x * x) for x in range(20)]
+
+
+KEPT = []
+
+
+def grown(x):
+    """Keep more than a worker may grow by after its first item; loky looks once a second."""
+    KEPT.append(np.ones(int(4e8 / 8)))
+    time.sleep(1.1)
+    return x
+
+
+def test_a_worker_that_has_grown_is_replaced_in_silence(monkeypatch):
+    monkeypatch.setattr(parallel, "PATIENCE", Patience(grown=3e8))
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        assert sorted(x for x, _ in stream(grown, range(6), jobs=2)) == list(range(6))
+    assert [str(warning.message) for warning in seen] == []
+
+
+def test_results_come_as_they_are_ready(tmp_path):
+    """Were they given in order, the first would wait in vain, and not be the last."""
+    given = []
+    for x, _ in stream(last_if_first, [(x, str(tmp_path)) for x in range(4)], jobs=2):
+        given.append(x[0])
+        (tmp_path / str(x[0])).touch()
+    assert given[-1] == 0
+
+
+def test_an_item_whose_worker_dies_is_tried_again(tmp_path):
+    items = [(x, 1, str(tmp_path)) for x in range(8)]
+    assert sorted(result for _, result in stream(deadly, items, jobs=2)) == [x * x for x in range(8)]
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_an_item_that_always_kills_its_worker_is_given_up(tmp_path):
+    items = [(x, 99, str(tmp_path)) for x in range(8)]
+    results = {item[0]: result for item, result in stream(deadly, items, jobs=2)}
+    died = results.pop(3)
+    assert isinstance(died, WorkerDied)
+    assert "died 3 times" in died.reason
+    assert results == {x: x * x for x in range(8) if x != 3}
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_an_unforeseen_error_is_not_hidden():
+    with pytest.raises(ZeroDivisionError, match="item"):
+        list(stream(failing, range(4), jobs=2))
+
+
+def test_a_stream_can_be_closed_early_and_another_opened():
+    first = stream(square, range(1, 50), jobs=2)
+    next(first)
+    first.close()
+    assert len(list(stream(square, range(3), jobs=2))) == 3
+
+
+def test_workers_keep_to_one_thread_of_blas():
+    assert {result for _, result in stream(threads, range(4), jobs=2)} == {"1"}
+
+
+@pytest.mark.parametrize("jobs", [0, -1])
+def test_a_number_of_jobs_out_of_range_is_refused_at_once(jobs):
+    with pytest.raises(InputError, match=rf"jobs = {jobs} is outside 1 <= jobs; "):
+        stream(square, [1], jobs=jobs)
+
+
 needs_cluster = pytest.mark.skipif(importlib.util.find_spec("distributed") is None, reason="needs the extra cluster")
+
+
+@needs_cluster
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
+def test_a_scheduler_that_does_not_answer_is_refused_at_once(address, monkeypatch):
+    monkeypatch.setattr(parallel, "PATIENCE", Patience(connection=2))
+    with pytest.raises(InputError, match=f"dask = {address} does not answer within 2 s; "):
+        stream(square, [1], dask=address)
 
 
 LONG = 600  # s: the end is for what never comes, not for what is slow
@@ -132,6 +210,15 @@ def staffed(cluster):
     return cluster
 
 
+def marking(item):
+    """Leave a sign of having begun, and end when there is a file `go` beside it."""
+    directory = Path(item)
+    (directory / "begun").touch()
+    while not (directory / "go").exists():
+        time.sleep(0.05)
+    return "done"
+
+
 @needs_cluster
 def test_missing_workers_are_named_and_waited_for(cluster, capsys):
     results = []
@@ -145,103 +232,28 @@ def test_missing_workers_are_named_and_waited_for(cluster, capsys):
     assert f"start one with dask worker {cluster.address}\n" in "".join(said)
 
 
-@pytest.fixture(params=["processes", pytest.param("cluster", marks=needs_cluster)])
-def workers(request):
-    """Two of them, as `stream` is told; the cluster by host and port alone."""
-    if request.param == "processes":
-        return {"jobs": 2}
-    return {"dask": request.getfixturevalue("staffed").address.removeprefix("tcp://")}
-
-
-def test_in_one_process_every_item_comes_with_its_result():
-    assert list(stream(square, range(20), jobs=1)) == [(x, x * x) for x in range(20)]
-
-
-def test_every_item_comes_once_with_its_result(workers, capsys):
-    assert sorted(stream(square, range(20), **workers)) == [(x, x * x) for x in range(20)]
+@needs_cluster
+def test_a_dask_cluster_does_the_work_and_hides_no_error(staffed, capsys):
+    """It is found by host and port alone."""
+    address = staffed.address.removeprefix("tcp://")
+    assert sorted(stream(square, range(20), dask=address)) == [(x, x * x) for x in range(20)]
     assert "no workers" not in capsys.readouterr().err
-
-
-KEPT = []
-
-
-def grown(x):
-    """Keep more than a worker may grow by after its first item; loky looks once a second."""
-    KEPT.append(np.ones(int(4e8 / 8)))
-    time.sleep(1.1)
-    return x
-
-
-def test_a_worker_that_has_grown_is_replaced_in_silence(monkeypatch):
-    monkeypatch.setattr(parallel, "PATIENCE", Patience(grown=3e8))
-    with warnings.catch_warnings(record=True) as seen:
-        warnings.simplefilter("always")
-        assert sorted(x for x, _ in stream(grown, range(6), jobs=2)) == list(range(6))
-    assert [str(warning.message) for warning in seen] == []
-
-
-def test_results_come_as_they_are_ready(tmp_path):
-    """Were they given in order, the first would wait in vain, and not be the last."""
-    given = []
-    for x, _ in stream(last_if_first, [(x, str(tmp_path)) for x in range(4)], jobs=2):
-        given.append(x[0])
-        (tmp_path / str(x[0])).touch()
-    assert given[-1] == 0
-
-
-def test_an_item_whose_worker_dies_is_tried_again(workers, tmp_path):
-    items = [(x, 1, str(tmp_path)) for x in range(8)]
-    assert sorted(result for _, result in stream(deadly, items, **workers)) == [x * x for x in range(8)]
-    assert len(list(tmp_path.iterdir())) == 1
-
-
-def test_an_item_that_always_kills_its_worker_is_given_up(tmp_path):
-    items = [(x, 99, str(tmp_path)) for x in range(8)]
-    results = {item[0]: result for item, result in stream(deadly, items, jobs=2)}
-    died = results.pop(3)
-    assert isinstance(died, WorkerDied)
-    assert "died 3 times" in died.reason
-    assert results == {x: x * x for x in range(8) if x != 3}
-    assert len(list(tmp_path.iterdir())) == 3
-
-
-def test_an_unforeseen_error_is_not_hidden(workers):
-    with pytest.raises(ZeroDivisionError, match="item"):
-        list(stream(failing, range(4), **workers))
-
-
-def test_a_stream_can_be_closed_early_and_another_opened():
-    first = stream(square, range(1, 50), jobs=2)
-    next(first)
-    first.close()
-    assert len(list(stream(square, range(3), jobs=2))) == 3
-
-
-def test_workers_keep_to_one_thread_of_blas():
-    assert {result for _, result in stream(threads, range(4), jobs=2)} == {"1"}
-
-
-@pytest.mark.parametrize("jobs", [0, -1])
-def test_a_number_of_jobs_out_of_range_is_refused_at_once(jobs):
-    with pytest.raises(InputError, match=rf"jobs = {jobs} is outside 1 <= jobs; "):
-        stream(square, [1], jobs=jobs)
+    with pytest.raises(ZeroDivisionError, match="item 0"):
+        list(stream(failing, [0], dask=address))
 
 
 @needs_cluster
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
-def test_a_scheduler_that_does_not_answer_is_refused_at_once(address, monkeypatch):
-    monkeypatch.setattr(parallel, "PATIENCE", Patience(connection=2))
-    with pytest.raises(InputError, match=f"dask = {address} does not answer within 2 s; "):
-        stream(square, [1], dask=address)
+def test_an_item_whose_cluster_worker_dies_goes_to_another(staffed, tmp_path):
+    items = [(x, 1, str(tmp_path)) for x in range(6)]
+    assert sorted(result for _, result in stream(deadly, items, dask=staffed.address)) == [x * x for x in range(6)]
+    assert len(list(tmp_path.iterdir())) == 1
 
 
-def marking(item):
-    """Leave a sign of having begun, and end when there is a file `go` beside it."""
-    directory = Path(item)
-    (directory / "begun").touch()
-    while not (directory / "go").exists():
-        time.sleep(0.05)
-    return "done"
+@needs_cluster
+def test_an_item_that_kills_every_cluster_worker_is_given_up(staffed, tmp_path):
+    results = {item[0]: r for item, r in stream(deadly, [(x, 99, str(tmp_path)) for x in (2, 3)], dask=staffed.address)}
+    assert results[2] == 4
+    assert "its worker died" in results[3].reason
 
 
 @needs_cluster
