@@ -6,7 +6,7 @@ The nodes of a pair are those of the first, smaller sphere. Beyond its core, 0.9
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import Any
@@ -98,16 +98,13 @@ def discretise(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
     return Discretised(first, operator, surface, scene, sum(body.unknowns for body in (first, *second)))
 
 
-def meshes_of(scene: Scene, core: Array, how: Discretisation, radii: Sequence[float] = ()) -> list[Any]:
-    """Meshes of the bodies, from the ends of the cells that move with the contact, with which that of a pair ends.
-
-    The radii of the bodies are those of the scene unless given.
-    """
-    (R, *others), length = radii or scene.radii, finest_length(scene, how)
+def meshes_of(scene: Scene, core: Array, how: Discretisation) -> list[Any]:
+    """Meshes of the bodies, from the ends of the cells that move with the contact, with which that of a pair ends."""
+    (R, *others), length = scene.radii, finest_length(scene, how)
     mesh = scene.body.mesh(R, core, length, how)
     if scene.counter is None:
         return [mesh]
-    end = float(layout_of(scene, how, R)[1].radius(core[-1:])[0][0])
+    end = float(layout_of(scene, how)[1].radius(core[-1:])[0][0])
     return [with_contact_to(each, end) for each in (mesh, scene.counter.facing(others[0], core, length, R, how))]
 
 
@@ -117,12 +114,9 @@ def finest_length(scene: Scene, how: Discretisation) -> float:
     return of_sequence(length, LENGTHS, np.round) if scene.sized else length
 
 
-def layout_of(scene: Scene, how: Discretisation, R: float | None = None) -> Layout:
-    """Cells of the surface that stand still, and the coordinate along it; a pair has no rings, as its rim is rigid.
-
-    The radius R of the first body is the scene's unless given.
-    """
-    return scene.body.layout(R or scene.radii[0], replace(how, rings=0) if scene.counter else how)
+def layout_of(scene: Scene, how: Discretisation) -> Layout:
+    """Cells of the surface that stand still, and the coordinate along it; a pair has no rings, as its rim is rigid."""
+    return scene.body.layout(scene.radii[0], replace(how, rings=0) if scene.counter else how)
 
 
 def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) -> SizedBody:

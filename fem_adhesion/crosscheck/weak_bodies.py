@@ -20,8 +20,9 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.bodies.layers import FAR_OUT, Stratified
 from fem_adhesion.crosscheck.definitions import heights, lengths, numbers_of
 from fem_adhesion.crosscheck.settings import USUAL
-from fem_adhesion.discretise import finest_length, layout_of, meshes_of
+from fem_adhesion.discretise import finest_length
 from fem_adhesion.mesh.file import is_straight, refined
+from fem_adhesion.mesh.spheres import with_contact_to
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.body import TRIANGLES, Body, box, discretise
 from fem_adhesion.weak_form.contact import Contact, Law, lennard_jones
@@ -182,13 +183,19 @@ def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) 
     how = Discretisation(degree, finest, USUAL.growth, USUAL.rings)
     if isinstance(scene.body, Stratified) and scene.body.held == "substrate":
         how = replace(how, beyond=_clamped(scene, scene.body, load, R, radius))
-    outer, coordinate = layout_of(scene, how, R)
-    lines = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=USUAL.growth)
+    outer, coordinate = scene.body.layout(R, replace(how, rings=0) if scene.counter else how)
+    length = finest_length(scene, how)
+    lines = grid.graded(coordinate.of(radius), length, float(outer[0]), growth=USUAL.growth)
     lines = grid.towards_axis(lines, scene.surface.first_cell(USUAL.tip), USUAL.growth)
-    meshes = meshes_of(scene, _fine_within(coordinate.of(reach), lines), how, (R, *bodies[1:]))
-    body, *second = (_standing(one, its, degree) for one, its in zip(scene.bodies, meshes, strict=True))
-    for other in second:
-        body = _opposed(body, other, scene.share or 0.0)
+    core = _fine_within(coordinate.of(reach), lines)
+    mesh = scene.body.mesh(R, core, length, how)
+    if scene.counter:
+        end, other = float(coordinate.radius(core[-1:])[0][0]), scene.counter
+        meshes = (scene.body, mesh), (other, other.facing(bodies[1], core, length, R, how))
+        first, second = (_standing(one, with_contact_to(its, end), degree) for one, its in meshes)
+        body = _opposed(first, second, scene.share or 0.0)
+    else:
+        body = _standing(scene.body, mesh, degree)
     # Of a pair what lies between the last cell and the equator, of strata what lies beyond those that yield.
     body = _with_rigid(body, R) if scene.counter or scene.body.layered else body
     return Contact(body, scene.tabor, heights(scene), law_of(scene))

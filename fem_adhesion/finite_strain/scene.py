@@ -65,9 +65,9 @@ def trace(
     Where strains are small the curve is that of the linear body, whose events are the starts for those at finite
     strain, and its points are solved for at finite strain when they are asked for. Each event has a mesh of its own,
     and another of other cells for elements one degree lower; its error estimate is twice the change from that to the
-    event's own, and more where the tension ends by a step. Its spread is that between the tractions that have an
-    energy. The energy is nan with the vertical traction, which has none; stability is as said at
-    `FiniteStrainProblem.negative_directions`.
+    event's own. Where the tension ends by a step there is a third mesh, and the changes count for more. Its spread is
+    that between the tractions that have an energy. The energy is nan with the vertical traction, which has none;
+    stability is as said at `FiniteStrainProblem.negative_directions`.
     """
     _require(scene, rtol, to_load)
     if scene.tabor > WIDEST_TABOR:
@@ -100,9 +100,10 @@ class Stages(Valued):
         at finite strain on the cells of the second level. Where the linear body does not have them, the curve of a
         higher level is traced at finite strain.
 
-        One chain has no twin beside it: the shift of an event along the path counts, see `ErrorRule.along`. Where the
-        tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2, and two
-        meshes may agree by accident (loads at pull-off then erred by 1.4 estimates): there is a twin, of cells between.
+        Most rungs have one chain and no twin beside it: the shift of an event along the path counts, see
+        `ErrorRule.along`. Where the tension ends by a step, in whichever cell that is, a degree more may gain no more
+        than a factor of 2, and two meshes may agree by accident (loads at pull-off then erred by 1.4 estimates): events
+        have a twin, of cells between.
         """
         degree = _lowest_degree(rtol, self.scene.tabor) + max(level, 1)
         linear = not level and nearly_linear(self.scene, to_load, self.settings)
@@ -142,11 +143,11 @@ class Stages(Valued):
 
 
 def _lowest_degree(rtol: float, tabor: float) -> int:
-    """Degree of the elements on the lowest rung: spikes of tension that are narrow take up to two more.
+    """Degree of the elements on the lowest rung: one for each decade, and more where spikes of tension are narrow.
 
-    With one at most a third rung was needed at tabor 3 and 1e-5, 7.3 s for 4.9; at 1e-4 it was not, 2.1 s for 3.2.
+    With a degree less a third rung was needed at tabor 3 and 1e-5, 7.3 s for 4.9; at 1e-4 it was not, 2.1 s for 3.2.
     """
-    return int(np.clip(np.round(-np.log10(rtol) - 1 + 3.3 * np.log10(max(tabor, 1.0))), 4, 6))
+    return int(np.clip(np.round(-np.log10(rtol) * (1 + 0.65 * np.log10(max(tabor, 1.0))) - 1), 4, 6))
 
 
 def _apart(scene: Scene, events: State, name: str) -> dict[str, float]:
@@ -313,8 +314,8 @@ def require_well_posed(scene: Scene) -> None:
 class ScenesBody(Valued):
     """The body of a scene, a hemisphere at finite strain, to be meshed for any range of contact radii.
 
-    `how` is the degree of the elements and the size of their cells, which grow along the surface the slower the more
-    steeply the tension ends.
+    `how` is the degree of the elements and the size of their cells, which grow along the surface as slowly as the
+    law asks, see `Scales.growth`.
     """
 
     scene: Scene

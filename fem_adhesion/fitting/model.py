@@ -63,8 +63,10 @@ def _closed(curve: Callable[[float, curves.Sampling], Array], units: Units) -> A
     return curve(units.tabor, curves.Sampling(FARTHEST * (1 + units.tabor), WIDEST, COUNT))[:2]
 
 
-by_jkr: Theory = partial(_closed, curves.jkr)
-"""JKR's curve: no attraction before contact, so that eps is but the unit of the approach."""
+def by_jkr(units: Units) -> Array:
+    """JKR's curve: no attraction before contact, so that eps is but the unit of the approach."""
+    return _closed(curves.jkr, units)
+
 
 THEORIES: Mapping[str, Theory] = {
     "atlas": by_atlas,

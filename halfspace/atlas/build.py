@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from itertools import pairwise
@@ -84,8 +83,7 @@ class Store(Generic[Key, T]):
             with self.file.open("a") as lines:
                 lines.write(json.dumps([key, self.known[key]], default=_plain) + "\n")
             last = np.ravel(np.array(key))[0]
-            sys.stdout.write(f"\r{self.file.stem}: {len(self.known)}, the last at tabor {last:.4g}   ")
-            sys.stdout.flush()
+            print(f"\r{self.file.stem}: {len(self.known)}, the last at tabor {last:.4g}   ", end="", flush=True)
         return self.known[key]
 
 

@@ -53,11 +53,11 @@ class Operator(ABC):
     @property
     def edge_row(self) -> Array:
         """Row (q,) that interpolates nodal values at the contact edge."""
-        raise NotImplementedError
+        raise NotImplementedError("the grid does not follow the contact; use interpolation at its radius")
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure, each (q,)."""
-        raise NotImplementedError
+        raise NotImplementedError("the grid does not follow the contact; use interpolation at its radius")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

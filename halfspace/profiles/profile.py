@@ -6,6 +6,7 @@ asked for. Most are the same surface at every Tabor parameter; one with a length
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Protocol, Self
 
 import numpy as np
@@ -14,7 +15,7 @@ from halfspace.limits import off_derivative, require_all, require_part
 from halfspace.values import Array
 
 
-class Surface:
+class Surface(ABC):
     """Height of the undeformed surface over its pole as a function of the radius, which rises.
 
     `end` is the radius in beta at which it ends, infinite if it does not. It is as smooth across the axis as a
@@ -33,13 +34,13 @@ class Surface:
         """Whether some derivative leaps between pieces of it, as of a spline."""
         return False
 
+    @abstractmethod
     def height(self, radii: Array) -> Array:
         """Height in beta^2/R at radii in beta."""
-        raise NotImplementedError
 
+    @abstractmethod
     def slope(self, radii: Array) -> Array:
         """Derivative of the height by the radius."""
-        raise NotImplementedError
 
     def first_cell(self, tolerance: float) -> float:  # noqa: ARG002 (smooth)
         """Length in beta of an axis cell of which one node leaves `tolerance`; infinite if a paraboloid's will do."""

@@ -395,7 +395,10 @@ AT_FINITE_STRAIN = tuple(
         (1.5, 300, NeoHookean(0.499), {"grip": "bonded"}),
         (1, 6, NeoHookean(), {}),
     )
-) + tuple(replace(sphere(1, ratio, material=NeoHookean()), law=Dugdale(0.2)) for ratio in (30, 100))
+) + tuple(
+    replace(sphere(tabor, ratio, material=NeoHookean()), law=Dugdale(width))
+    for tabor, ratio, width in ((1, 30, 0.2), (1, 100, 0.2), (0.7, 40, 0.25))
+)
 STEPPED = (replace(sphere(3.2, 1290.0, poisson=0.45), law=Dugdale(0.232)),)
 BEADS = (
     silica(),
@@ -559,7 +562,9 @@ FAMILIES = {
     ),
     "mesh from a file": events(at(MESHED, 3), at((), 3), FE, partial(relocated, body_of_mesh)),
     "curve, half-space": curve(at((0.05, 0.3, 0.75, 1, 2, 5), 2, 4, 6, 8), at((0.3, 2), 3), HS, half_space),
-    "curve, finite strain": curve(at(AT_FINITE_STRAIN[:2], 3, 4), at((), 3), FE, truths.along_at_finite_strain),
+    "curve, finite strain": curve(
+        at((*AT_FINITE_STRAIN[:2], AT_FINITE_STRAIN[-1]), 3, 4), at((), 3), FE, truths.along_at_finite_strain
+    ),
     "curve, block": curve(at((0.05, 0.3, 1, 2, 5), 2, 3, 4, 5), at((0.05, 2), 3), FE, half_space),
     "curve, hemisphere": curve(at(SLIDING, 3, 5), at(SLIDING[1:2], 3), FE, truths.harmonics),
     "springs, half-space": springs(at((0.05, 0.3, 0.75, 1, 2, 5, 20), 2, 4, 6), at((0.3, 2), 6), HS),

@@ -27,6 +27,7 @@ from fem_adhesion.common.numbers import DIGITS, KINDS, PREFIXES, engineering, ex
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.laws import Morse
+from halfspace.profiles import Power
 from halfspace.scaling import Units
 from halfspace.theories import closed_forms as theories
 from halfspace.theories.exact_sphere import JKRSphere
@@ -577,6 +578,14 @@ def test_engineering_prefixes():
 
 
 # The figure -----------------------------------------------------------------------------------------------------------
+
+
+def test_the_arrows_are_the_jumps_of_a_given_profile():
+    found = assess(Contact(**SILICA, profile=Power(3.0), stiffness=0.2))
+    assert found.best.model == "given profile"
+    jumps = [text for text in assess_figure.draw(found).axes[0].texts if text.arrow_patch]
+    for arrow, way in zip(jumps, ("on", "off"), strict=True):
+        assert arrow.xyann[0] == pytest.approx(1e9 * found.best.values[f"jump_{way}_separation"].value)
 
 
 @pytest.fixture(scope="module")

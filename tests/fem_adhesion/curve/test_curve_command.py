@@ -215,7 +215,8 @@ def test_each_key_of_the_json_holds_what_it_says(both, real):
         for key, values in curve.items():
             assert found["curve"][key] == plain(values)
         for name, event in path.events.items():
-            assert found["events"][name] == plain(event.numbers) | {"missed": []}
+            numbers = {key: getattr(event, key) for one in NUMBERS for key in (one, f"{one}_error")}
+            assert found["events"][name] == plain(numbers) | {"missed": []}
         assert found["energy_released"] == vars(path.energy)
         assert (found["unknowns"], found["seconds"]) == (path.unknowns, path.seconds)
     for device, cycle in (("fixed_grips", both.grips), ("apparatus", both.apparatus)):

@@ -323,14 +323,34 @@ def test_total_energy_grows_by_the_load_times_the_approach(pressure, convention)
     """Along the equilibria, by eight Gauss points."""
     problem = problem_of(block(), 0.3, convention=convention, pressure=pressure)
     x = entered(problem, (2.0, 1.0, 0.5, 0.2, 0.0, -0.02, -0.035))
+    work, first, last = along_approach(problem, x, problem.load)
+    assert abs(work) > 0.05
+    assert problem.energy(last) - problem.energy(first) == pytest.approx(work, rel=1e-6)
+
+
+def along_approach(problem, x, rate):
+    """Integral of a rate from an approach of 1 to 1.2, and the states at both ends."""
     nodes, weights = np.polynomial.legendre.leggauss(8)
     states = []
     for approach in 1.0 + 0.1 * np.concatenate([[0], 1 + nodes, [2]]):
         x = newton.solve(problem, x, newton.approach(approach)).x
         states.append(x)
-    work = 0.1 * sum(weight * problem.load(state) for weight, state in zip(weights, states[1:-1], strict=True))
+    return 0.1 * sum(w * rate(state) for w, state in zip(weights, states[1:-1], strict=True)), states[0], states[-1]
+
+
+def test_elastic_energy_grows_by_a_vertical_tractions_work():
+    """It has no energy of its own."""
+    problem = problem_of(block(), 0.3)
+
+    def power(x):
+        unit = np.eye(1, x.size, x.size - 1)[0]
+        moved = problem.surface.vertical @ problem.surface_unknowns(problem.bordered_solver(x, unit)(unit))
+        return -problem.tabor * (problem.areas(x) * problem.pressure(x)) @ moved
+
+    work, first, last = along_approach(problem, entered(problem, (2.0, 1.0, 0.5, 0.2, 0.0, -0.02, -0.035)), power)
     assert abs(work) > 0.05
-    assert problem.energy(states[-1]) - problem.energy(states[0]) == pytest.approx(work, rel=1e-6)
+    elastic = [problem.tabor * problem.held.energy(state[:-1]) for state in (first, last)]
+    assert elastic[1] - elastic[0] == pytest.approx(work, rel=1e-8)
 
 
 # What the traction is counted per

@@ -78,7 +78,10 @@ def test_a_turn_in_tension_is_no_compression(written):
     kept = np.flatnonzero(LOADED[:1000] < OFFSET - 1 * FORCE)[-1]  # in contact after the jump, and pulled
     whole = slice(kept, 2000 - kept)
     travel, force = np.delete(TRAVEL, whole), np.delete(LOADED, whole)
-    assert read(written(piezo_m=travel, force_N=force)).force == pytest.approx(force)
+    file = written(piezo_m=travel, force_N=force)
+    assert read(file).force == pytest.approx(force)
+    with pytest.raises(InputError, match=r"curve 1 of .*csv, limit: 0 to 0; "):
+        read(file, number=1)
 
 
 def test_preparing_finds_what_was_put_in(written):

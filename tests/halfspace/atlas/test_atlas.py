@@ -60,6 +60,13 @@ def test_states_are_those_of_the_source(known, event):
                 assert abs(found.value - number.value) <= 1e-9 * size + (number.error if tabor < 0.699 else 0)
 
 
+def test_a_check_looks_at_every_number_that_is_stored(known):
+    for tabor, numbers in known.items():
+        not_stored = {"zero_load.load", "jump_on.landing.approach", "jump_off.landing.approach"}
+        points = build.compared(stored()["series"], numbers, tabor)
+        assert {point["number"] for point in points} == numbers.keys() - not_stored
+
+
 def test_energies_are_those_of_the_source(known):
     for tabor, numbers in known.items():
         on, off = (numbers.get(f"{jump}.energy") for jump in ("jump_on", "jump_off"))
