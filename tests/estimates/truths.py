@@ -90,11 +90,11 @@ def _layered(scene, nodes, finest, growth, far, spacing, last):
     body, profile = scene.body.layered, scene.shape.surface(scene.tabor)
     scales = Scales(scene.tabor, scene.law, profile, body)
     outer = min(profile.end, scales.radius_at((far * scales.widened) ** 2 / 2))
-    rim = np.geomspace(outer, FARTHEST * outer, 18) if np.isinf(profile.end) and np.isfinite(scene.law.decay) else None
+    rim = 18 if np.isinf(profile.end) and np.isfinite(scene.law.decay) else 1
     make = partial(_layered_panels, images_of(body, spacing), nodes, rim)
     last = last * outer if outer == profile.end else np.inf
     first = at_tip(profile, nodes)
-    how = finest, growth, np.array([outer]), FLAT, last
+    how = finest, growth, np.geomspace(outer, FARTHEST * outer, 18)[:rim], FLAT, last
     return standing(SizedBody(scales, make, *how, first=first, strip=np.pi / 2), LEFT)
 
 
@@ -102,9 +102,10 @@ FARTHEST = 1e8  # times, to which a tail goes on
 
 
 def _layered_panels(images, nodes, rim, lines):
-    operator = layered_panels(images, lines, nodes)
-    if rim is not None:
-        operator = discretise.with_rigid_rim(operator, rim, FLAT)
+    """Of which so many lines, the first of them the last that yields, are far out."""
+    operator = layered_panels(images, lines[: len(lines) - rim + 1], nodes)
+    if rim > 1:
+        operator = discretise.with_rigid_rim(operator, lines[-rim:], FLAT)
     return operator, operator.radii.size
 
 
