@@ -130,13 +130,13 @@ def test_the_unit_of_a_mesh_does_not_move_the_events(tmp_path):
 def _estimates_are_the_whole_change_by_the_finer_mesh(path):
     """Of quadratic elements on a mesh that somebody else graded it is not known how much of it is left.
 
-    Nor is an event known better than to 5e-4 of the accuracy asked for.
+    Nor is an event known better than to 5e-3 of the accuracy asked for.
     """
     coarse, fine = path.stages
     for name, event in path.events.items():
         found = fine[name]
         change = np.abs(found.point.observables - coarse[name].point.observables)
-        floor = 5e-4 * path.rtol * (np.array([1.0, 0.0, 1.0, 0.0]) + np.abs(found.point.observables))
+        floor = 5e-3 * path.rtol * (np.array([1.0, 0.0, 1.0, 0.0]) + np.abs(found.point.observables))
         errors = np.maximum(change + rounding(found.problem, found.point.x), floor)
         assert (event.approach_error, event.load_error) == pytest.approx(tuple(errors[:2]), rel=1e-3, abs=0)
 

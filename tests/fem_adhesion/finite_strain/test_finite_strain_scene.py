@@ -155,7 +155,8 @@ def test_energy_released_is_the_work_of_the_load():
     )
     assert abs(path.energy.value - released) <= path.energy.error < 1e-4
     changes = np.abs(np.diff([energy_released(stage["separated"], stage["zero_approach"]) for stage in path.stages]))
-    assert path.energy.error == pytest.approx(2 * np.sum(changes), rel=1e-3, abs=1e-10)
+    least = 5e-3 * 1e-4 * path.energy.value
+    assert path.energy.error == pytest.approx(max(2 * np.sum(changes), least), rel=1e-3, abs=1e-10)
 
 
 # --- spheres as small as their contact ---

@@ -76,7 +76,7 @@ def test_the_change_before_the_last_counts_for_a_fifth_on_grids_of_the_half_spac
     rule = path.ladder.rule
     assert path.ladder.coarser
     assert rule.change([0.0, 1.0, 1.1]) == pytest.approx(0.2 * 1.0 + 0.1)
-    assert rule.estimate([[5.0, 5.0]], 0.0).error == pytest.approx(5e-4 * 1e-3 * 5.0)
+    assert rule.estimate([[5.0, 5.0]], 0.0).error == pytest.approx(5e-3 * 1e-3 * 5.0)
 
 
 def test_a_layers_twin_has_images_of_its_own():
