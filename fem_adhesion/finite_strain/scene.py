@@ -65,9 +65,9 @@ def trace(
     Where strains are small the curve is that of the linear body, whose events are the starts for those at finite
     strain, and its points are solved for at finite strain when they are asked for. Each event has a mesh of its own,
     and another of other cells for elements one degree lower; its error estimate is twice the change from that to the
-    event's own. Where the tension ends by a step there is a third mesh, and the changes count for more. Its spread is
-    that between the tractions that have an energy. The energy is nan with the vertical traction, which has none;
-    stability is as said at `FiniteStrainProblem.negative_directions`.
+    event's own, and more where the tension ends by a step. Its spread is that between the tractions that have an
+    energy. The energy is nan with the vertical traction, which has none; stability is as said at
+    `FiniteStrainProblem.negative_directions`.
     """
     _require(scene, rtol, to_load)
     if scene.tabor > WIDEST_TABOR:
@@ -100,10 +100,8 @@ class Stages(Valued):
         at finite strain on the cells of the second level. Where the linear body does not have them, the curve of a
         higher level is traced at finite strain.
 
-        Most rungs have one chain and no twin beside it: the shift of an event along the path counts, see
-        `ErrorRule.along`. Where the tension ends by a step, in whichever cell that is, a degree more may gain no more
-        than a factor of 2, and two meshes may agree by accident (loads at pull-off then erred by 1.4 estimates): events
-        have a twin, of cells between.
+        Where the tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2.
+        One chain has no twin beside it: the shift of an event along the path counts, see `ErrorRule.along`.
         """
         degree = _lowest_degree(rtol, self.scene.tabor) + max(level, 1)
         linear = not level and nearly_linear(self.scene, to_load, self.settings)
@@ -111,16 +109,11 @@ class Stages(Valued):
         curve = partial(linear_charts, self.scene, to_load) if linear else at_finite_strain
         other, body = self.body(degree - 1, *GRIDS.twin[:2]), self.body(degree)
         bodies = [other] if not level else [body] if level == 1 else [other, body]
-        stages = tuple(map(self._stage, bodies))
-        between = self.body(degree - 1, *np.sqrt(GRIDS.twin[:2]))
-        twin = self._stage(between) if level and self.scene.scales.step_gap else None
+        stages = tuple(Raising(one, partial(Stages.windows, self, one.how.degree)) for one in bodies)
         left, parts = REMAINING / self.scene.scales.gradual, (1.0, self.settings.other_cells)
         settings = {"linear": linear, **asdict(bodies[-1].how)}
         rule = ErrorRule(left, parts=parts, along=True)
-        return Rung(curve, stages, settings, twin, rule=rule)
-
-    def _stage(self, body: ScenesBody) -> Raising:
-        return Raising(body, partial(Stages.windows, self, body.how.degree))
+        return Rung(curve, stages, settings, rule=rule)
 
     def charts(self, degree: int, to_load: float) -> Iterable[Chart]:
         """Charts of a curve up to a load; NotConverged if that takes more of them than are worth their time."""

@@ -71,7 +71,6 @@ class Ladder(Valued):
         differing = [a for a, b in zip(stages, [*stages[1:], None], strict=True) if a is not b]
         rule = replace(self.rule, remaining=max(self.rule.remaining, 1.0), least=0.0)
         twin, coarser = (other and other.everywhere for other in (self.twin, self.coarser))
-        twin = None if any(twin is stage for stage in differing) else twin  # of events alone
         return Ladder(tuple(differing), twin, rule, coarser)
 
     def chains(self, fine: T, again: Callable[[Stage, T], T | Unsolved]) -> list[list[T]] | Unsolved:

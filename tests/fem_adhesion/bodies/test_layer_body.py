@@ -72,6 +72,12 @@ def test_both_solvers_have_the_same_events_on_a_layer(scene, rtol):
     assert differing(elements, integral) == []
 
 
+def test_an_event_that_a_grid_turned_follows_the_contact_on_all():
+    """Where one that stands still turned pull-off, that of the next rung does by less, and it errs by more."""
+    path = traced(Scene(9.15, Layer(50.7, "sliding", poisson=0.0), RoundedPunch(0.399)), 0.062)
+    assert [stage["pull_off"].followed for stage in path.stages] == [True] * len(path.stages)
+
+
 def test_a_state_between_events_is_held_by_its_estimate():
     """Interpolated as if only the surface had images, operators on thin strata all erred by 7 estimates of its gap."""
     layer, law, profile = Layer(0.916, poisson=0.4999), Dlvo(-0.66, 3.24), Power(2.29)
