@@ -89,20 +89,22 @@ def tables(study: Facts) -> Iterator[Table]:
 
 
 def _printed(stem: str, see: str, column: str, entries: Sequence[Printed], **numbers: float) -> Table:
-    """Printed and computed numbers; how many agree to their last digit, and which is off most.
-
-    What is not a number agrees with nothing, and is told first of all, see `Facts.troubles`.
-    """
+    """Printed and computed numbers; how many agree to their last digit, and which is off most."""
     columns: Columns[Printed] = {
         ("row", column, "unit", "printed"): lambda p: (p.row, f"{p.column:g}", p.unit, p.printed),
         ("computed", "error"): lambda p: _cells(p.computed),
         ("relative deviation", "note"): lambda p: (f"{p.deviation:+.1e}", p.note),
     }
+    known = [entry for entry in entries if math.isfinite(entry.deviation)]
     right = sum(is_rounded(p.printed, p.computed) for p in entries)
-    worst = max(entries, key=lambda entry: abs(entry.deviation))
-    agreement = f"{right} of {len(entries)} values agree to their last printed digit."
-    off = f"The largest relative deviation is {abs(worst.deviation):.1e}, in {worst.row} at {worst.column:g}."
-    return Table.of(stem, said("greenwood", stem, "title", **numbers), joined(agreement, off, see), entries, columns)
+    agreement = [f"{right} of {len(entries)} values agree to their last printed digit."]
+    if known:
+        worst = max(known, key=lambda entry: abs(entry.deviation))
+        off = f"{abs(worst.deviation):.1e}, in {worst.row} at {worst.column:g}"
+        agreement.append(f"The largest relative deviation is {off}.")
+    if len(known) < len(entries):
+        agreement.append(f"{len(entries) - len(known)} are not numbers.")
+    return Table.of(stem, said("greenwood", stem, "title", **numbers), joined(*agreement, see), entries, columns)
 
 
 def _jumps(study: Facts) -> Table:
