@@ -1,4 +1,4 @@
-"""The hemisphere of finite elements: uniform states, and an elastic sphere in Legendre polynomials."""
+"""The hemisphere of finite elements: its shape, uniform states, and an elastic sphere in Legendre polynomials."""
 
 from functools import partial
 
@@ -10,13 +10,15 @@ from whole_sphere import surface_deflection
 
 from fem_adhesion.elasticity.cells import stiffness_of
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.exterior import sliding
+from fem_adhesion.elasticity.exterior import clamped, sliding
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh import curved, spheres
 from halfspace.elastic import grid
+from halfspace.profiles.formulas import SphereSurface
 
 R = 2.5
+GRIPS = {"sliding": sliding, "bonded": clamped}
 
 
 def space(degree, *, finest=0.15, growth=2.0):
@@ -25,10 +27,10 @@ def space(degree, *, finest=0.15, growth=2.0):
     return Space(spheres.hemisphere(R, lines, depths), ElementQuadP(degree))
 
 
-def condensed(degree, poisson=0.3, traction="projected", **mesh):
+def condensed(degree, poisson=0.3, grip="sliding", traction="projected", **mesh):
     body = space(degree, **mesh)
     K = partial(stiffness_of, body, [Elastic(poisson)])
-    return condense(body, poisson, far_field=sliding, stiffness=K, traction=traction)
+    return condense(body, poisson, far_field=GRIPS[grip], stiffness=K, traction=traction)
 
 
 def gaussian(radii):
@@ -37,6 +39,29 @@ def gaussian(radii):
 
 def cosine(radii):
     return np.sqrt((1 - radii / R) * (1 + radii / R))
+
+
+@pytest.fixture(scope="module")
+def fine():
+    return space(10)
+
+
+@pytest.mark.parametrize(("traction", "area"), [("projected", 1), ("surface", 2)])
+def test_areas(traction, area):
+    weights = condensed(6, traction=traction).operator.weights
+    assert np.sum(weights) == pytest.approx(area * np.pi * R**2, rel=1e-9)
+
+
+def test_the_contact_surface_is_the_sphere_below_the_wall(fine):
+    r, z = surface_points(fine, "contact")
+    assert np.max(np.abs(np.hypot(r, z + R) - R)) < 1e-8 * R
+    inside = r < 0.9 * R  # the profile has a vertical tangent at the equator
+    assert np.max(np.abs(z + SphereSurface(R).height(r * inside) / R)[inside]) < 1e-8 * R
+    assert np.max(z) < 0
+
+
+def surface_points(body, name):
+    return boundary_basis(body, name, 8).global_coordinates()
 
 
 # Linear displacements are in the space of cells whose shape has the element's degree or less.

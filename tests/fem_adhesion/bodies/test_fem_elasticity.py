@@ -21,6 +21,18 @@ NU = 0.3
 # --- meshes ---
 
 
+@pytest.mark.parametrize("mesh", [block_grid(0.3, 3.0, 50.0), quarter_disc(50.0, graded_size(0.3, 3.0, 0.3))])
+def test_boundaries_are_named_and_complete(mesh):
+    middles = {name: mesh.p[:, mesh.facets[:, facets]].mean(axis=1) for name, facets in mesh.boundaries.items()}
+    assert set(middles) == {"axis", "contact", "far"}
+    assert np.all(middles["axis"][0] == 0.0)
+    assert np.all(middles["contact"][1] == 0.0)
+    assert np.all(np.hypot(*middles["far"]) > 45.0)
+    assert sum(m.shape[1] for m in middles.values()) == len(mesh.boundary_facets())
+    assert mesh.p[0].min() == 0.0
+    assert mesh.p[1].max() == 0.0
+
+
 @pytest.mark.parametrize("fine", [0.4, 0.01])
 def test_quarter_disc_respects_sizes_with_no_sharp_angle(fine):
     size = graded_size(fine, 1.0, 0.25)
