@@ -10,9 +10,10 @@ rings at a depth z below the surface, of all the pressure's images one:
     S(k) - 1 = sum_j c_j e^(-k z_j),   2 int_0^inf e^(-k z) J0(k r) J0(k s) dk = 4 K(m)/(pi d),
 
 d^2 = (r + s)^2 + z^2, 1 - m = [(r - s)^2 + z^2]/d^2. That is smooth over the distance z, so that Gauss's points serve
-as they are in a cell that is no longer than the first stratum is thick. Where a soft stratum lies between stiffer ones
-S rises and falls, and depths and strengths are complex, of which the real part counts; 4 K(m)/(pi d) is then
-2/M(d, d (1 - m)^(1/2)), M the arithmetic-geometric mean.
+as they are in a cell that is no longer than the first stratum is thick, and a few samples of the radius tell it to all
+nodes that are closer together. Where a soft stratum lies between stiffer ones S rises and falls, and depths and
+strengths are complex, of which the real part counts; 4 K(m)/(pi d) is then 2/M(d, d (1 - m)^(1/2)), M the
+arithmetic-geometric mean, faster than Carlson's R_F.
 """
 
 from __future__ import annotations
@@ -23,10 +24,11 @@ from itertools import pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 from scipy.special import ellipkm1
 
-from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
-from halfspace.elastic.grid import gauss_legendre, polynomial
+from halfspace.elastic.compliance import ElasticOperator, SurfaceNodes, panels, to_infinity
+from halfspace.elastic.grid import gauss_legendre, gauss_points, polynomial
 from halfspace.elastic.kernel import near_moments, of_lagrange
 from halfspace.elastic.layers import LayeredBody, surface_compliance, total_thickness
 from halfspace.elastic.operators import NearlyHomogeneous, Piecewise, chebyshev_lengths, nodes_beside
@@ -49,7 +51,7 @@ class ImageSettings:
     deeper: tuple[float, ...] = (1.0, 10.0, 100.0, 1e3)  # times as deep they go if need be: stiff strata spread a load
     spacings: tuple[float, float] = (1.14, 1.1)  # of depths, a ratio, and a twin's: by 1.2 the fit is a decade worse
     close: float = 0.14  # most logarithm of the ratio of lengths between which images are interpolated
-    wide: float = 3.5  # most logarithm of the ratio of contact radii between which a remainder is one polynomial
+    wide: float = 1.75  # most logarithm of the ratio of contact radii between which a remainder is one polynomial
     wider: float = 10.0  # times the widest contact that is planned for, up to which remainders are known
     samples: int = 500  # wave numbers at which S is fitted
     fitted: float = 3e-8  # misfit at which no deeper images are tried
@@ -218,14 +220,17 @@ def image_compliance(images: Images, body: ElasticOperator, until: float = np.in
     return image_kernels(images, body, until, known) * body.weights
 
 
-def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> Array:
-    """The same but for the weights.
+def image_kernels(
+    images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0, samples: Array | None = None
+) -> Array:
+    """The same but for the weights, between the nodes or at samples (n,) of the radius, long cells' nodes among them.
 
     Cells that begin beyond a radius, in beta, and an infinite one are integrated by their nodes even where they are
     longer than the first stratum is thick: too stiffly for what is pressed there, if anything is. Between the first
     nodes, so many, where it is known, it is left zero; all finite cells are theirs.
     """
-    radii, (left, right), k = body.radii, (body.cells[:-1], body.cells[1:]), body.cell_nodes.shape[1]
+    radii, (left, right) = body.radii if samples is None else samples, (body.cells[:-1], body.cells[1:])
+    number, k = np.searchsorted(radii, body.radii), body.cell_nodes.shape[1]
     i, j = np.triu_indices(radii.size)
     i, j = i[j >= known], j[j >= known]
     rules = _near(radii, left, right, (right - left > images.smooth) & (left < until), known)
@@ -237,7 +242,8 @@ def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, 
         for some in _blocks(to.size, images.depths.size * rule[0]):
             nodes = body.cell_nodes[cell[some]]
             moments = near_moments(images.ring, radii[to[some]], left[cell[some]], right[cell[some]], k, rule)
-            values[..., to[some, None], nodes] = of_lagrange(moments, gauss_legendre(k)[0]) / body.weights[nodes]
+            known_by = of_lagrange(moments, gauss_legendre(k)[0]) / body.weights[nodes]
+            values[..., to[some, None], number[nodes]] = known_by
     return values
 
 
@@ -256,12 +262,36 @@ def nearly_homogeneous(
     degree = int(np.ceil(np.log(2 / left) / np.arcsinh(pole)))
     ends = least * ratio ** np.arange(np.ceil(np.log(HOW.wider * widest / least) / np.log(ratio)) + 1)
     lengths = [chebyshev_lengths(*part, degree) for part in pairwise(ends.tolist())]
-    return NearlyHomogeneous(unit, Piecewise(ends, lengths, partial(_in_units, images, unit, widest, until, left)))
+    rows = [_sampled(unit, images.smooth / float(radii.max()), left)[1] for radii in lengths]
+    make = partial(_in_units, images, unit, widest, until, left)
+    return NearlyHomogeneous(unit, Piecewise(ends, lengths, make), rows)
 
 
 def _in_units(images: Images, unit: ElasticOperator, widest: float, until: float, left: float, radii: Array) -> Array:
-    farthest = max(radii[-1], widest) + until - widest
-    return image_kernels(images.in_units(radii, left), unit, farthest / float(radii.min()))
+    farthest, scaled = max(radii[-1], widest) + until - widest, images.in_units(radii, left)
+    samples, _ = _sampled(unit, scaled.smooth, left)
+    return image_kernels(scaled, unit, farthest / float(radii.min()), samples=samples)
+
+
+def _sampled(body: SurfaceNodes, smooth: float, left: float) -> tuple[Array, Array]:
+    """Radii (n,) at which to know what is smooth over a distance, and rows (q, n) by which it is known at the nodes.
+
+    Cells that lie within such a distance have as many of Gauss's points in common as leave a part `left` of a kernel
+    at that depth, whose poles lie two half-lengths beside the real axis; where their nodes are no more, these serve.
+    A contact on a thin layer, which hardly yields, is told by what the half-space and the images do not cancel: of its
+    width that is the distance, and the part is one of that.
+    """
+    count = int(np.ceil(np.log(2 / (left * min(smooth, 1.0))) / np.arcsinh(2.0)))
+    first, last = np.floor(body.cells[:-1] / smooth), np.ceil(body.cells[1:] / smooth)
+    within = np.where(last - first == 1, first, -1 - np.arange(first.size))
+    samples, rows = [], []
+    for cells in np.split(np.arange(first.size), 1 + np.flatnonzero(np.diff(within))):
+        nodes = body.radii[body.cell_nodes[cells].ravel()]
+        points = gauss_points(body.cells[[cells[0], cells[-1] + 1]], count)[0].ravel()
+        samples.append(points if points.size < nodes.size else nodes)
+        rows.append(polynomial(samples[-1], nodes))
+    beyond = body.radii[body.beyond]
+    return np.concatenate([*samples, beyond]), block_diag(*rows, np.eye(beyond.size))
 
 
 def _blocks(count: int, size: int) -> list[slice]:

@@ -80,10 +80,14 @@ class Piecewise(Valued):
 
     def at(self, length: float, derivative: int) -> Array:
         """Kernel (q, q) at a length, or its derivative by the logarithm of that."""
-        part = int(np.searchsorted(self.ends[1:-1], length))
+        part = self.part(length)
         nodes = np.log(self.lengths[part])
         weights = lagrange(nodes, barycentric(nodes), float(np.log(length)))[derivative]
         return np.asarray(np.tensordot(weights, self.kernels(part), 1))
+
+    def part(self, length: float) -> int:
+        """Number of the part that serves a length."""
+        return int(np.searchsorted(self.ends[1:-1], length))
 
     def kernels(self, part: int, known: Array | None = None) -> Array:
         """Kernels (m, q, q) of a part, which need not be made at first if they are known."""
@@ -96,10 +100,12 @@ class NearlyHomogeneous(Homogeneous):
     """A homogeneous body and the remainder of another one, on a grid that is scaled with the contact.
 
     The singular part of the kernel is that of the homogeneous body: only what is smooth, the remainder, over the radius
-    and the nodes' weights, is interpolated between contact radii in beta.
+    and the nodes' weights, is interpolated between contact radii in beta. It is known at some samples (n,) of the
+    radius, and at the nodes by rows (q, n), one array for each part of it.
     """
 
     remainder: Piecewise
+    rows: Sequence[Array]
 
     @property
     def served(self) -> tuple[float, float]:
@@ -111,13 +117,15 @@ class NearlyHomogeneous(Homogeneous):
         return STORE.get(self, "at", partial(self._made, scale), scale)
 
     def _made(self, scale: float) -> ElasticOperator:
-        compliance = self.unit.compliance + self.remainder.at(scale, 0) * self.unit.weights
+        rows = self.rows[self.remainder.part(scale)]
+        compliance = self.unit.compliance + rows @ self.remainder.at(scale, 0) @ rows.T * self.unit.weights
         return replace(self.unit, compliance=compliance).scaled(scale)
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
         radii, weights, _ = super().rates(scale, pressure)
-        rate = self.remainder.at(scale, 1) @ (self.unit.weights * pressure)
+        rows = self.rows[self.remainder.part(scale)]
+        rate = rows @ (self.remainder.at(scale, 1) @ (rows.T @ (self.unit.weights * pressure)))
         return radii, weights, self.at(scale).compliance @ pressure / scale + rate
 
     def root(self, scale: float) -> Array:

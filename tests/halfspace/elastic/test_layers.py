@@ -181,9 +181,10 @@ def test_images_in_units_of_the_contact_deflect_alike(body):
     """From the least contact to one that is wider than was planned; the rule for long cells is that of the widest."""
     images = images_of(body)
     rounded = 1e-15 * np.abs(images.strengths).sum()  # up to 1e6 each, of either sign
-    unit = compliance.panels(grid.graded(1.0, 0.1, 20.0, growth=3.0), 8)
+    unit = compliance.panels(grid.graded(1.0, 1e-4, 20.0, growth=2.0), 8)
     pressure = np.exp(-(unit.radii**2))
     operator = nearly_homogeneous(images, unit, (0.3, 3.0), np.inf, 1e-12)
+    assert operator.rows[0].shape[1] < unit.radii.size
     for a, widest in ((operator.served[0], 3.0), (0.95, 3.0), (2.999, 3.0), (7.0, 30.0)):
         own = replace(images, smooth=images.smooth * a / widest)
         wanted = a * unit.compliance + image_compliance(own, unit.scaled(a))
@@ -196,7 +197,7 @@ def test_images_serve_a_contact_wider_than_the_attraction():
     """Under a load a cone on a thin layer is forty times as wide as it attracts; there deflections were of any size."""
     body, profile = Layer(0.05, 0.3), Hyperboloid(0.05).surface(300.0)
     scales, images = Scales(300.0, profile=profile, body=body), images_of(body)
-    operator = layered_charts(scales, images, resolution_for(scales, 1e-2), 1000.0)[1].problem.operator
+    operator = layered_charts(scales, images, resolution_for(scales, 1e-4), 1000.0)[1].problem.operator
     pressure = np.sqrt(np.maximum(1 - operator.unit.radii**2, 0))
     for radius in scales.widest_radius(1000.0) * np.array([1.0, 0.1]):
         own = layered.layered(images, operator.unit.scaled(radius), np.inf)
