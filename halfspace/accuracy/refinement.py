@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeVar
 
 from halfspace.accuracy.stages import Charted, FoldsLost, Rung, State, on_all
@@ -118,7 +119,8 @@ def further_folds(
 
     def solve(fold: Located) -> Chains | Unsolved:
         before = met_again(below.stages[-1], fold) if below.stages else fold
-        return last.chains_of(before or fold)
+        own = last.chains_of(before or fold)
+        return own and last.beside_twin(own)
 
     kept, lost = confirmed(turns(segments, FOLD, slice(1, -1)) if segments else [], solve, jumps)
     return numbered(kept), lost
@@ -126,41 +128,53 @@ def further_folds(
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ascent(Valued):
-    """How far a ladder was climbed: the last two rungs, the chains of each event between them, and the events there."""
+    """How far a ladder was climbed: the last two rungs, and the chains of each event between them."""
 
     below: Rung
     higher: Rung
     chains: dict[str, Chains]
-    events: dict[str, Event]
 
     @property
     def state(self) -> State:
         """The events on the last stage."""
         return {name: chains[0][-1] for name, chains in self.chains.items()}
 
+    @cached_property
+    def events(self) -> dict[str, Event]:
+        """The events, with errors by their chains."""
+        return self.higher.estimates(self.chains)
+
+    def misses(self, rtol: float) -> bool:
+        """Whether a number errs by more than is asked for."""
+        return bool(Tolerance.on(self.events, rtol).missed(self.events))
+
+    def with_twin(self) -> Ascent:
+        """The same with the chains from the last rung's twin."""
+        return replace(self, chains=self.higher.with_twin(self.chains))
+
 
 def ascend(state: State, lowest: Rung, rtol: float, rung: Callable[[int], Rung], levels: Sequence[int]) -> Ascent:
     """Solve for the events of a rung on those of the levels above it, one after the other, until `rtol` is met.
 
-    Or as long as there is memory for the next level, where that is not the first.
+    Or as long as there is memory for the next level, where that is not the first. A twin makes errors no smaller: the
+    rungs on which `rtol` is missed without it, but for the last, do without.
     """
     first, *others = levels
     ascent = _risen(lowest, state, rung(first), rtol)
     for level in others:
-        if not Tolerance.on(ascent.events, rtol).missed(ascent.events):
-            break
+        if not ascent.misses(rtol) and not (ascent := ascent.with_twin()).misses(rtol):
+            return ascent
         try:
             ascent = _risen(ascent.higher, ascent.state, rung(level), rtol)
         except GridTooLarge:
             break
-    return ascent
+    return ascent.with_twin()
 
 
 def _risen(below: Rung, state: State, higher: Rung, rtol: float) -> Ascent:
     """Solve for the events of one rung on the next; none is told better than to a part of the accuracy asked for."""
     higher = replace(higher, rule=replace(higher.rule, least=LEAST * rtol))
-    chains = higher.chains(state)
-    return Ascent(below, higher, chains, higher.estimates(chains))
+    return Ascent(below, higher, higher.chains(state))
 
 
 def _margin(found: Mapping[str, Chains], rung: Rung) -> Estimate | None:

@@ -68,18 +68,27 @@ class Rung(Valued):
     rule: ErrorRule = USUAL
 
     def chains(self, state: State) -> dict[str, Chains]:
-        """Chains of each event from a coarser stage and the rung below, and from its twin, to the last stage."""
+        """Chain of each event from a coarser stage and the rung below to the last stage."""
         return {name: _demanded(name, self.chains_of(event)) for name, event in state.items()}
 
+    def with_twin(self, found: Mapping[str, Chains]) -> dict[str, Chains]:
+        """The chains of each event with that from the twin, if there is one and it is not among them."""
+        return {name: _demanded(name, self.beside_twin(chains)) for name, chains in found.items()}
+
     def chains_of(self, event: Located) -> Chains | Unsolved:
-        """Those of one event."""
+        """The chain of one event."""
         chain = [event]
         for stage in self.stages:
             found = met_again(stage, chain[-1])
             if not found:
                 return found
             chain.append(found)
-        return with_beside(chain, self.twin, self.coarser, met_again)
+        return with_beside(chain, None, self.coarser, met_again)
+
+    def beside_twin(self, chains: Chains) -> Chains | Unsolved:
+        """The chains of one event with that from the twin."""
+        own, *twins = chains
+        return chains if twins else with_beside(own, self.twin, None, met_again)
 
     def estimates(self, found: Mapping[str, Chains]) -> dict[str, Event]:
         """Events, with their changes along the chains as errors."""

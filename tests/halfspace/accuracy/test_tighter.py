@@ -5,6 +5,7 @@ from agreement import differing
 
 import halfspace
 from halfspace import Coated, Layer
+from halfspace.accuracy import stages
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
@@ -77,6 +78,23 @@ def test_the_change_before_the_last_counts_for_a_fifth_on_grids_of_the_half_spac
     assert path.ladder.coarser
     assert rule.change([0.0, 1.0, 1.1]) == pytest.approx(0.2 * 1.0 + 0.1)
     assert rule.estimate([[5.0, 5.0]], 0.0).error == pytest.approx(5e-3 * 1e-3 * 5.0)
+
+
+def test_only_the_last_rung_is_solved_on_its_twin(monkeypatch):
+    """Which makes errors no smaller: where they are too large without it, the next rung is climbed to first."""
+    asked, beside = [], stages.with_beside
+
+    def noting(chain, twin, coarser, again):
+        asked.append(twin)
+        return beside(chain, twin, coarser, again)
+
+    monkeypatch.setattr(stages, "with_beside", noting)
+    path = halfspace.trace(1.0, law=Dugdale(0.1), rtol=1e-4)
+    assert path.met
+    assert path.settings["events"]["nodes"] >= path.settings["curve"]["nodes"] + 3  # the second rung has three more
+    twins = [twin for twin in asked if twin is not None]
+    assert len(twins) >= len(path.events)
+    assert all(twin is path.ladder.twin for twin in twins)
 
 
 def test_a_layers_twin_has_images_of_its_own():
