@@ -1,5 +1,7 @@
 """Meshes, stiffness and boundary points of the finite elements, without any contact."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from facets import boundary_basis
@@ -7,11 +9,19 @@ from scipy.spatial.distance import cdist
 from skfem import Basis, BilinearForm, ElementQuadP, ElementTriP2, ElementTriP3, ElementVector
 from skfem.helpers import ddot, div, sym_grad
 
-from fem_adhesion.elasticity.cells import Cells, cell_quadrature, cell_stiffness, elastic_matrix
+from fem_adhesion.elasticity.cells import (
+    Cells,
+    cell_quadrature,
+    cell_stiffness,
+    elastic_matrix,
+    projected_stiffness,
+    stiffness_of,
+)
 from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.elasticity.surface import boundary_points
-from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
+from fem_adhesion.materials import Elastic
+from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from fem_adhesion.mesh.file import refined
 from fem_adhesion.mesh.spheres import held_sphere
 
@@ -70,6 +80,23 @@ def test_stiffness_equals_scikit_fems_assembly(mesh, element):
     basis = Basis(mesh, ElementVector(element), quadrature=cell_quadrature(space))
     theirs = axisymmetric_elasticity.assemble(basis)
     assert abs(ours - theirs).max() < 1e-13 * abs(theirs).max()
+
+
+@pytest.mark.parametrize(("poisson", "stiffness"), [(0.3, cell_stiffness), (0.4999, projected_stiffness)])
+def test_rectangles_above_one_another_have_each_its_own_stiffness(poisson, stiffness):
+    """From flat ones, a millionth as high as wide, to upright ones; on cells that lean none is taken for another."""
+    upright = tensor_grid(np.array([0.0, 1.0, 1.001, 30.0]), np.array([0.0, 1e-6, 0.5, 100.0]))
+    leaning = dataclasses.replace(upright, doflocs=upright.p + [[0.0], [0.1]] * upright.p[0])
+    for mesh, are in ((upright, True), (leaning, False)):
+        space = Space(mesh, ElementQuadP(4))
+        cells = Cells.of(space)
+        found = np.empty((mesh.nelements, *2 * [len(space.cell_dofs)]))
+        for own, K in stiffness_of(space, [Elastic(poisson)]):
+            found[own] = K
+        assert cells.are_rectangles is are
+        wanted = stiffness(cells, poisson)
+        sizes = np.sqrt(np.einsum("cii,cjj->cij", wanted, wanted))
+        assert np.all(np.abs(found - wanted) <= 1e-12 * sizes)
 
 
 # --- Boussinesq's closed forms and traces ---
