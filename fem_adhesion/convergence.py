@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fem_adhesion.bodies.body import MOST_RINGS, Discretisation
-from fem_adhesion.discretise import CURVE_DEGREE, Discretised, discretise, size_for, sized_body
+from fem_adhesion.discretise import ELEMENTS, Discretised, discretise, size_for, sized_body
 from fem_adhesion.elasticity.elimination import DISSECTED
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
@@ -28,15 +28,6 @@ from halfspace.equilibrium.events import ErrorRule
 from halfspace.errors import GridTooCoarse
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array
-
-# Ratio of the block's radii on two successive rungs. The load left out beyond a block that goes on as a half-space
-# falls as L^-4: a decade. Held blocks err by O(1/L), which a change from L/3 to L exceeds twice.
-LARGER_ENDLESS, LARGER_HELD = 10**0.25, 3.2
-
-FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
-PER_DEGREE = 15.0  # what each degree divides it by
-REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
-BY_STEP = 2.0  # times as much by a law whose tension ends by a step: a degree may leave half of it
 
 
 def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> EquilibriumPath:
@@ -101,7 +92,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     settings = {name: getattr(above, name) for name in ("degree", "finest", "growth")} | {"radius": size}
     curve, *stages = block(above, size)
     if not scene.body.endless:  # traced on the whole, which carries contacts that a smaller one does not
-        how, whole = Discretisation(CURVE_DEGREE + level), given or size
+        how, whole = Discretisation(ELEMENTS.curve_degree + level), given or size
         curve, _ = block(how, whole)
         settings |= {"curve_degree": how.degree, "curve_radius": whole}
     if level:
@@ -127,7 +118,7 @@ def resolution_for(scene: Scene, rtol: float, level: int) -> tuple[Discretisatio
 
 
 def _larger(scene: Scene) -> float:
-    return LARGER_ENDLESS if scene.body.endless else LARGER_HELD
+    return ELEMENTS.larger_endless if scene.body.endless else ELEMENTS.larger_held
 
 
 def discretised_block(scene: Scene, to_load: float, how: Discretisation, size: float) -> ladders.Discretised:
@@ -167,16 +158,21 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float) -> Callable[[int], R
     by a step does so at one place of a cell, for both degrees: numbers erred by up to fifty times their estimate.
     """
     stage = cache(partial(_standing, scene, to_load))  # that of a rung is the coarser one two rungs above
-    body, step = scene.body, BY_STEP if scene.scales.step_gap else 1.0
+    body, step = scene.body, ELEMENTS.by_step if scene.scales.step_gap else 1.0
     # Where a degree gains little the lowest takes half of the time; elsewhere estimates were twice as wide by it.
     lowest = degree_for(rtol, least=3 if scene.scales.step_gap else 4)
     rule = ErrorRule(
-        step * REMAINING, parts=(GRIDS.before, 1.0), along=True, steps=scene.scales.steps, beyond=scene.tension_beyond
+        step * ELEMENTS.remaining,
+        parts=(GRIDS.before, 1.0),
+        along=True,
+        steps=scene.scales.steps,
+        beyond=scene.tension_beyond,
     )
 
     def rung(level: int) -> Rung:
         degree = lowest + level
-        how, below, coarser, curve = (with_rings(d) for d in (degree, degree - 1, degree - 2, CURVE_DEGREE + level))
+        degrees = degree, degree - 1, degree - 2, ELEMENTS.curve_degree + level
+        how, below, coarser, curve = map(with_rings, degrees)
         twin = replace(below, finest=GRIDS.twin[0] * below.finest, growth=GRIDS.twin[1] * below.growth)
         return Rung(
             sized_body(scene, curve, to_load).curve,
@@ -196,7 +192,8 @@ def _standing(scene: Scene, to_load: float, how: Discretisation) -> Standing:
 
 def degree_for(rtol: float, least: int = 4) -> int:
     """Degree of the elements on the lowest rung."""
-    return int(np.clip(4 + np.ceil(np.log(FOURTH / rtol) / np.log(PER_DEGREE) - 1e-9), least, 8))
+    more = np.ceil(np.log(ELEMENTS.fourth / rtol) / np.log(ELEMENTS.per_degree) - 1e-9)
+    return int(np.clip(4 + more, least, 8))
 
 
 def with_rings(degree: int) -> Discretisation:

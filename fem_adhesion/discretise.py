@@ -44,10 +44,31 @@ FAR_FIELDS: Mapping[FarFieldName, FarField] = {
 
 
 TRIANGLE = ElementTriP2()
-LENGTHS = 50  # lengths of the cells at the contact edge to a factor of e, so that charts of like contacts share
-# Of the elements for a curve, whose operator is interpolated to 0.01: see `ChartSettings`. Its events, within 2e-3 of
-# their places, are starts. At 4 the curve of three strata took twice as long, a third of the whole.
-CURVE_DEGREE = 3
+
+
+@dataclass(frozen=True)
+class ElementSettings:
+    """How fine elements are, how large blocks, and what a degree leaves.
+
+    The elements for a curve, whose operator is interpolated to 0.01, see `ChartSettings`, find its events within 2e-3
+    of their places, as starts: at degree 4 the curve of three strata took twice as long, a third of the whole. Of the
+    radii of a block on two successive rungs the load left out beyond one that goes on as a half-space falls as L^-4: a
+    decade. Held blocks err by O(1/L), which a change from L/3 to L exceeds twice.
+    """
+
+    lengths: int = 50  # of cells at the contact edge to a factor of e, so that charts of like contacts share
+    curve_degree: int = 3  # of the elements for a curve
+    larger_endless: float = 10**0.25  # ratio of the radii of a block that goes on as a half-space
+    larger_held: float = 3.2  # and of one that is held
+    fourth: float = 1.5e-5  # estimated error of the events from degree 4 to 5
+    per_degree: float = 15.0  # what each degree divides it by
+    remaining: float = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
+    by_step: float = 2.0  # times as much by a law whose tension ends by a step: a degree may leave half of it
+    left_out: float = 1e-5  # of the load, beyond a block for fields that goes on as a half-space: 44 beta at tabor 1
+    fields_beyond: float = 10.0  # `Discretisation.beyond` for fields inside a half-space under a sphere
+
+
+ELEMENTS = ElementSettings()
 
 
 @cache
@@ -111,7 +132,7 @@ def meshes_of(scene: Scene, core: Array, how: Discretisation) -> list[Any]:
 def finest_length(scene: Scene, how: Discretisation) -> float:
     """Length of the cells at the contact edge in beta; of bodies with a length the nearest of a sequence."""
     length = scene.scales.edge_cell(how.finest)
-    return of_sequence(length, LENGTHS, np.round) if scene.sized else length
+    return of_sequence(length, ELEMENTS.lengths, np.round) if scene.sized else length
 
 
 def layout_of(scene: Scene, how: Discretisation) -> Layout:
@@ -143,7 +164,7 @@ def discretised_about(scene: Scene, contact_radius: float, how: Discretisation) 
     The radius is in beta, nan without contact, where the mesh is finest on the axis. A mesh that is given, to which
     `how` means nothing, is cut as often as for the events.
     """
-    how = replace(how, beyond=FIELDS_BEYOND, refined=1)
+    how = replace(how, beyond=ELEMENTS.fields_beyond, refined=1)
     if scene.body.file:
         return discretise(scene, np.empty(0), how)
     radius, length = 0.0 if np.isnan(contact_radius) else contact_radius, finest_length(scene, how)
@@ -151,12 +172,8 @@ def discretised_about(scene: Scene, contact_radius: float, how: Discretisation) 
         body = sized_body(scene, how)
         edge = body.coordinate.of(radius)
         return discretise(scene, body.lines(edge if edge > length else 0.0), how)
-    size = scene.body.cut_off or size_for(scene.scales, LEFT_OUT)
+    size = scene.body.cut_off or size_for(scene.scales, ELEMENTS.left_out)
     return discretise(scene, grid.graded(radius if radius > length else 0.0, length, size, growth=how.growth), how)
-
-
-LEFT_OUT = 1e-5  # part of the load beyond a block for fields that goes on as a half-space: 44 beta wide at tabor 1
-FIELDS_BEYOND = 10.0  # `Discretisation.beyond` for fields inside a half-space under a sphere
 
 
 def size_for(scales: Scales, rtol: float) -> float:

@@ -19,24 +19,32 @@ from halfspace.limits import require_film, require_poisson, require_thickness
 from halfspace.scales import Scales
 from halfspace.values import Array, keep
 
-# Lengths of their spread that a half-space under strata ends farther out than one without in its own: at 100, 1e3 and
-# 1e4 of these the deflection of a stiff film errs by 6e-7, 2e-8 and less than 1e-9 of itself.
-FAR_OUT = 10.0
-SPREAD = 0.01  # least length over which strata spread a load, in the radius of what attracts
-WIDTH = 800.0  # width of the mesh in widths of a rigid attraction: the load left out beyond is 1e-10 R dgamma
-# Thicknesses that the mesh is wider: what dies out falls by e^(-0.74 r/t) at least, there and back again to 1e-13. From
-# the roots of the denominator of the yield, (3 - 4 nu) cosh 2x + 2 x^2 + 5 - 12 nu + 8 nu^2, the first at nu = 1/2.
-DIED_OUT = 20.0
-# Thicknesses up to which strata on a rigid base yield to an attraction that reaches farther: its gap is wide there, and
-# they move by a part of their thickness; the stiffness along them falls short of that across by the square of this. On
-# an elastic base thicknesses or beta, whichever is more.
-SLENDER = 1e5
-# Part of the length of a column of cells by which those in it are deeper than at the contact edge, until all in a
-# stratum are alike. As thin as there but long, under the contact and far out, they make the stiffness ill-conditioned:
-# from one contact radius to the next compliances of a coating of poisson 0.4999 scattered by 1e-4, of others by 1e-6,
-# with this by 5e-6 and 3e-9; under the contact by 2e-6 and 1e-8, with this by 3e-8 and 5e-10. At 0.1 estimates on thick
-# coatings are 1.5 times as wide.
-DEEPER = 0.03
+
+@dataclass(frozen=True)
+class StrataSettings:
+    """How far meshes of strata reach, and how deep their cells are.
+
+    What dies out beside a contact falls by e^(-0.74 r/t) at least, there and back again to 1e-13: from the roots of the
+    denominator of the yield, (3 - 4 nu) cosh 2x + 2 x^2 + 5 - 12 nu + 8 nu^2, the first at nu = 1/2. Slender strata on
+    a rigid base yield to an attraction that reaches farther: its gap is wide there, and they move by a part of their
+    thickness; the stiffness along them falls short of that across by the square of this.
+
+    Cells as thin as at the contact edge but long, under the contact and far out, make the stiffness ill-conditioned:
+    from one contact radius to the next compliances of a coating of poisson 0.4999 scattered by 1e-4, of others by 1e-6,
+    as deep as they are by 5e-6 and 3e-9; under the contact by 2e-6 and 1e-8, now by 3e-8 and 5e-10. At 0.1 estimates on
+    thick coatings are 1.5 times as wide.
+    """
+
+    far_out: float = 10.0  # lengths of its spread that a half-space under strata ends farther out than one without in
+    # its own: at 100, 1e3 and 1e4 the deflection of a stiff film errs by 6e-7, 2e-8 and less than 1e-9 of itself
+    spread: float = 0.01  # least length over which strata spread a load, in the radius of what attracts
+    width: float = 800.0  # of the mesh in widths of a rigid attraction: the load beyond is 1e-10 R dgamma
+    died_out: float = 20.0  # thicknesses that the mesh is wider, see above
+    slender: float = 1e5  # thicknesses that are meshed; on an elastic base thicknesses or beta, whichever is more
+    deeper: float = 0.03  # of the length of a column of cells, by which those in it are deeper, until all are alike
+
+
+STRATA = StrataSettings()
 
 
 class Strata:
@@ -76,7 +84,7 @@ class Stratified(Strata, Body):
 
     def extent(self, scales: Scales) -> float:
         """Radius up to which its surface attracts."""
-        return scales.whole_radius((WIDTH * scales.widened) ** 2 / 2)
+        return scales.whole_radius((STRATA.width * scales.widened) ** 2 / 2)
 
     def layout(self, R: float, how: Discretisation) -> Layout:
         """Cells up to the end of what attracts, or of the surface over it; those far out are rigid.
@@ -85,7 +93,7 @@ class Stratified(Strata, Body):
         long as deep made the stiffness singular.
         """
         depth = self.interfaces[-1]
-        slender = SLENDER * (max(1.0, depth) if self.held == "substrate" else depth)
+        slender = STRATA.slender * (max(1.0, depth) if self.held == "substrate" else depth)
         return grid.equal_ratios(min(R, slender), R, most=how.growth), FLAT
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
@@ -109,17 +117,17 @@ class Stratified(Strata, Body):
         """Radius of the mesh: where all that dies out on a rigid base has done so, or what strata spread is small."""
         moduli = [modulus for _, modulus in self.regions]
         if self.held != "substrate":
-            return R + DIED_OUT * math.sqrt(max(moduli) / min(moduli)) * self.interfaces[-1]
+            return R + STRATA.died_out * math.sqrt(max(moduli) / min(moduli)) * self.interfaces[-1]
         return max(2 * R, how.beyond * self.spread(R))
 
     def spread(self, R: float) -> float:
         """Length in beta over which a half-space below is loaded: where strata spread what pulls at them within R.
 
-        It is some times longer than that of the strata, see `FAR_OUT`.
+        It is some times longer than that of the strata, see `StrataSettings.far_out`.
         """
         moduli = [modulus / self.beyond.modulus for _, modulus in self.regions]
         stiffness = sum(max(1.0, E) * part.thickness for E, part in zip(moduli, self.strata, strict=False))
-        return FAR_OUT * max(SPREAD * R, stiffness)
+        return STRATA.far_out * max(STRATA.spread * R, stiffness)
 
 
 def _slab(begin: float, end: float, finest: float, growth: float) -> Array:
@@ -134,11 +142,11 @@ def _joined(slabs: Sequence[Array]) -> Array:
 
 
 def _deepened(mesh: Any, r: Array, slabs: Sequence[Array], finest: float) -> Any:
-    """Mesh of slabs between lines of constant radius, with the long cells in them nearer to equal depths: `DEEPER`."""
+    """Mesh of slabs between lines of constant radius, the long cells in them deeper, see `StrataSettings`."""
     even = [np.linspace(slab[0], slab[-1], slab.size) for slab in slabs]
     z, towards, mean = _joined(slabs), _joined(even), _joined([np.gradient(lines) for lines in even])
     column, row = np.searchsorted(r, mesh.p[0]), np.searchsorted(z, -mesh.p[1])
-    deeper = DEEPER * (np.gradient(r) - finest)[column]
+    deeper = STRATA.deeper * (np.gradient(r) - finest)[column]
     depth = z[row] + deeper / (deeper + mean[row]) * (towards - z)[row]
     return replace(mesh, doflocs=np.array([mesh.p[0], -depth]))
 

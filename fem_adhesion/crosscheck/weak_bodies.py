@@ -17,7 +17,7 @@ from skfem import MeshTri
 
 from fem_adhesion.bodies.body import Body as ElasticBody
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.bodies.layers import FAR_OUT, Stratified
+from fem_adhesion.bodies.layers import STRATA, Stratified
 from fem_adhesion.crosscheck.definitions import heights, lengths, numbers_of
 from fem_adhesion.crosscheck.settings import USUAL
 from fem_adhesion.discretise import finest_length
@@ -217,7 +217,7 @@ def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float
     """
     yielding = float(surface_compliance(strata, np.array([1 / radius]))[0]) / (2 * radius)
     far = 1 / (np.pi * strata.beyond.modulus * USUAL.clamped * (1 / (scene.tabor * W) + yielding))
-    return max(1 / FAR_OUT, far / strata.spread(R))
+    return max(1 / STRATA.far_out, far / strata.spread(R))
 
 
 def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:

@@ -11,15 +11,7 @@ from functools import partial
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.discretise import (
-    CURVE_DEGREE,
-    FAR_FIELDS,
-    finest_length,
-    layout_of,
-    meshes_of,
-    quadrilateral,
-    sized_body,
-)
+from fem_adhesion.discretise import ELEMENTS, FAR_FIELDS, finest_length, layout_of, meshes_of, quadrilateral, sized_body
 from fem_adhesion.elasticity.cells import projects
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.body import material_body
@@ -252,7 +244,7 @@ def raised(event: Located, problem: FiniteStrainProblem) -> Located | Unsolved:
 def linear_charts(scene: Scene, to_load: float) -> tuple[Chart, Chart]:
     """Charts for the curve of the linear body."""
     linear = scene.made_of(LinearElastic(scene.poisson))
-    return sized_body(linear, Discretisation(CURVE_DEGREE), to_load).curve()
+    return sized_body(linear, Discretisation(ELEMENTS.curve_degree), to_load).curve()
 
 
 def nearly_linear(scene: Scene, to_load: float, settings: Settings) -> bool:

@@ -45,6 +45,9 @@ class ChartSettings:
     around: float = 1.005  # by which contact radii differ from where a chart for one event is made: by four or five
     # operators, 1.05 took six or seven, at 1.002 what rounding leaves in their differences moved pull-off on coatings
     steps: int = 25  # per unit of the logarithm: charts end where those of like contacts do, to be the same
+    near: float = 0.1  # finest cells that a contact may end away from the place for which a grid that stands was made
+    alike: float = 2.0  # ratio of how fast the path turns on two grids: 0.8 to 1.3 on common ones, 3 to 1e6 where a
+    # grid turns it
 
 
 CHARTS = ChartSettings()

@@ -33,10 +33,18 @@ from halfspace.limits import require_between, require_one_of
 from halfspace.scales import Scales
 from halfspace.values import Array
 
-PART = 0.08  # times m^-4: what the estimates of m and of 2 m intervals in a cell leave of a load, found by trial
-CROSSING = 2.0  # of a change, what may be left where errors of two orders cancel; 1 leaves 1 % of numbers outside
-FEWEST = 3  # intervals a cell, of as many parts each, with which the grid carries the spike
-BEYOND = 8  # nodes of the infinite cell; with 12 no digit of 1e-5 is another
+
+@dataclass(frozen=True)
+class KernelSettings:
+    """How many intervals of the pressures of 1997 a cell has, m or 2 m in an estimate."""
+
+    part: float = 0.08  # times m^-4: what the estimates leave of a load, found by trial
+    crossing: float = 2.0  # of a change, what may be left where errors of two orders cancel; 1 leaves 1 % outside
+    fewest: int = 3  # intervals a cell, of as many parts each, with which the grid carries the spike
+    beyond: int = 8  # nodes of the infinite cell; with 12 no digit of 1e-5 is another
+
+
+INTERVALS = KernelSettings()
 
 
 @dataclass(frozen=True)
@@ -65,20 +73,20 @@ class Kernel:
 def _straight(kind: str, parts: int, intervals: int, reach: float, cells: Array) -> ElasticOperator:
     """Operator on cells divided into intervals, by one of `compliance`."""
     inner = extrapolated(getattr(compliance, kind), divided(cells, intervals), parts)
-    return compliance.to_infinity(inner, BEYOND, reach)
+    return compliance.to_infinity(inner, INTERVALS.beyond, reach)
 
 
 def _finer(scales: Scales, rtol: float, level: int) -> tuple[Resolution, ...]:
     """Resolutions with twice as many intervals from level to level."""
-    least = max(FEWEST, math.ceil((PART / rtol) ** 0.25))
+    least = max(INTERVALS.fewest, math.ceil((INTERVALS.part / rtol) ** 0.25))
     levels = (level, max(level - 1, 0))
     return tuple(Resolution(least * 2**k, 0.6, 3.0, GRIDS.extent * scales.widened) for k in levels)
 
 
 KERNELS: Mapping[str, Kernel] = {
     "panels": Kernel("panels", endless, resolutions_for, 1.0, 1e-9, MOST_RUNGS),
-    "triangles": Kernel("triangles", partial(_straight, "triangles", 2), _finer, CROSSING, 1e-6, 2),
-    "bands": Kernel("bands", partial(_straight, "bands", 3), _finer, CROSSING, 1e-6, 2),
+    "triangles": Kernel("triangles", partial(_straight, "triangles", 2), _finer, INTERVALS.crossing, 1e-6, 2),
+    "bands": Kernel("bands", partial(_straight, "bands", 3), _finer, INTERVALS.crossing, 1e-6, 2),
 }
 
 

@@ -27,11 +27,6 @@ from halfspace.equilibrium.contact import contact_of
 from halfspace.scales import Scales
 from halfspace.values import Array
 
-# Of what n nodes a panel leave, 10^-n, what polynomials in the contact radius may leave of a layer's images. On a stiff
-# coating pull-off's approach errs by 40 times that; estimates do not know it where finer grids have the same radii.
-BETWEEN = 1e-4
-WIDER = 2  # times the half-space's extent, to where all images are integrated
-
 
 def discretise(
     images: Sequence[Images], scales: Scales, to_load: float, resolution: Resolution, which: int
@@ -56,7 +51,7 @@ def layered_charts(
     the infinite cell, is too little to deflect a layer. Those that follow the contact do past the
     widest one: a sharp tip's is wider than that.
     """
-    how = replace(resolution, extent=WIDER * resolution.extent)
+    how = replace(resolution, extent=HOW.farther * resolution.extent)
     outer = scales.radius_at(how.extent**2 / 2)
     first, *rest = half_space_charts(scales, how, to_load=to_load)
     operator = first.problem.interface.operator.at(1.0)
@@ -64,7 +59,7 @@ def layered_charts(
     charts = [replace(first, problem=contact_of(scales, with_images(images, operator, outer)), leave=leave)]
     for chart in rest:
         unit, widest = chart.problem.interface.operator.at(1.0), step_above(scales.widest_radius(to_load))
-        left = BETWEEN * 10.0**-how.nodes
+        left = HOW.between * 10.0**-how.nodes
         following = nearly_homogeneous(images, unit, (min(leave, widest / 2), widest), outer + widest, left)
         charts.append(Chart(contact_of(scales, following), chart.unknowns))
     return tuple(charts)

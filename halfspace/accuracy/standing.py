@@ -10,15 +10,12 @@ from typing import Protocol
 
 import numpy as np
 
-from halfspace.accuracy.finite_bodies import SizedBody
+from halfspace.accuracy.finite_bodies import CHARTS, SizedBody
 from halfspace.accuracy.stages import Charted, Discretised
 from halfspace.equilibrium.charts import Chart, Stage, moved, settled, undeformed_radius
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import Unsolved
-
-NEAR = 0.1  # of the finest cell, that a contact may end away from the place for which a grid was made
-ALIKE = 2.0  # ratio of how fast the path turns on two grids: 0.8 to 1.3 on common ones, 3 to 1e6 where a grid turns it
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,7 +70,7 @@ class Standing(WhereAsked):
 
     def make(self, radius: float) -> tuple[float, float, Chart]:
         """Chart for a contact radius in beta, and the radii from and to which it serves."""
-        length, near = self.body.length, NEAR * self.body.length
+        length, near = self.body.length, CHARTS.near * self.body.length
         if radius <= length:
             return 0.0, length, self.body.standing(0.0)
         return radius - near, radius + near, self.body.standing(radius)
@@ -116,7 +113,7 @@ def _radius(event: Located) -> float:
 
 def _alike(found: Located, event: Located) -> bool:
     """Whether the path turns about as fast where an event was found as where it was before."""
-    return not event.condition.stationary or 1 / ALIKE < found.slope / event.slope < ALIKE
+    return not event.condition.stationary or 1 / CHARTS.alike < found.slope / event.slope < CHARTS.alike
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -10,7 +10,7 @@ from dataclasses import asdict
 from functools import partial
 
 from halfspace.accuracy.grids import GRIDS, Resolution, twin_of
-from halfspace.accuracy.kernels import CROSSING, Kernel, require_kernel
+from halfspace.accuracy.kernels import INTERVALS, Kernel, require_kernel
 from halfspace.accuracy.layered import layered
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Discretised, Rung
@@ -87,5 +87,5 @@ def _rung(scales: Scales, rtol: float, how: Kernel, discretise: Discretise, leve
     if not level:
         return Rung(curve, (stage,), settings)
     twin, before = discretise(twin_of(below), 1)[1], discretise(coarser[0], 0)[1] if coarser else None
-    rule = ErrorRule(CROSSING if scales.pieced else how.left, (GRIDS.before, 1.0), steps=scales.steps)
+    rule = ErrorRule(INTERVALS.crossing if scales.pieced else how.left, (GRIDS.before, 1.0), steps=scales.steps)
     return Rung(curve, (stage,), settings, twin, before, rule)

@@ -51,6 +51,9 @@ class ImageSettings:
     deeper: tuple[float, ...] = (1.0, 10.0, 100.0, 1e3)  # times as deep they go if need be: stiff strata spread a load
     spacings: tuple[float, float] = (1.14, 1.1)  # of depths, a ratio, and a twin's: by 1.2 the fit is a decade worse
     close: float = 0.14  # most logarithm of the ratio of lengths between which images are interpolated
+    between: float = 1e-4  # of what n nodes a panel leave, 10^-n, what polynomials in the contact radius may: pull-off
+    # from a stiff coating errs by 40 times that, and estimates do not know it where finer grids have the same radii
+    farther: float = 2.0  # times the half-space's extent, to where all images are integrated
     wide: float = 1.75  # most logarithm of the ratio of contact radii between which a remainder is one polynomial
     wider: float = 10.0  # times the widest contact that is planned for, up to which remainders are known
     samples: int = 500  # wave numbers at which S is fitted

@@ -36,6 +36,19 @@ from halfspace.values import Array, Estimate
 
 
 @dataclass(frozen=True)
+class DeviceSettings:
+    """How far the curve is followed to the jumps of a soft apparatus, which take off far from contact."""
+
+    farther: float = 1.5  # margin by which the points added to a curve reach past the jump
+    nearer: float = 1.1  # and past its beginning
+    points: int = 12  # so added
+    widths: float = 1.7  # of the attraction, where the undeformed gap has doubled: what finite cells should cover
+
+
+HOW = DeviceSettings()
+
+
+@dataclass(frozen=True)
 class Jump:
     """A jump of the contact at a fixed base: the states before and after, and the energy set free, in R dgamma eps."""
 
@@ -309,16 +322,12 @@ def _energy(state: Located, compliance: float) -> float:
 
 # How far the grids must go: a soft apparatus jumps on from beyond the curve's first point
 
-FARTHER, NEARER = 1.5, 1.1  # margins by which the points added to a curve reach past the jump and past its beginning
-POINTS = 12  # so added
-WIDTHS = 1.7  # of the attraction, where the undeformed gap has doubled: what cells should cover but the infinite one
-
 
 def reaching(path: EquilibriumPath, stiffness: float) -> EquilibriumPath:
     """Extend a curve to the separation from which an apparatus of the given stiffness jumps on, if it has to be."""
     first = path.segments[0]
     jump = first.problem.interface.scales.rigid_jump_on(stiffness)
-    if jump > float(first.points[0].observables[APPROACH]) / NEARER:
+    if jump > float(first.points[0].observables[APPROACH]) / HOW.nearer:
         return path
     return replace(path, segments=(_far_segment(first, jump), *path.segments))
 
@@ -331,7 +340,7 @@ def widened(problem: Traceable, approach: float) -> Traceable:
     if not isinstance(problem, ContactProblem) or not isinstance(problem.operator, ElasticOperator):
         return problem
     body, h, scales = problem.operator, 1 - approach, problem.scales
-    reach = max(scales.radius_at(WIDTHS**2 * max(h, 0.0)) / body.extent, scales.tail_reach)
+    reach = max(scales.radius_at(HOW.widths**2 * max(h, 0.0)) / body.extent, scales.tail_reach)
     if not body.beyond.size or reach <= scales.tail_reach:
         return problem
     nodes = min(body.beyond.size, body.cell_nodes.shape[1])
@@ -340,10 +349,11 @@ def widened(problem: Traceable, approach: float) -> Traceable:
 
 def _far_segment(first: Segment, jump: float) -> Segment:
     """Points of the separated branch from beyond a jump to past the first point of a curve."""
-    far, near = 1 - FARTHER * jump, 1 - float(first.points[0].observables[APPROACH]) / NEARER
+    far, near = 1 - HOW.farther * jump, 1 - float(first.points[0].observables[APPROACH]) / HOW.nearer
     problem = widened(first.problem, 1 - far)
     metric = metric_for(problem)
     points = [
-        required(separated(problem, approach, metric)) for approach in (1 - np.geomspace(far, near, POINTS)).tolist()
+        required(separated(problem, approach, metric))
+        for approach in (1 - np.geomspace(far, near, HOW.points)).tolist()
     ]
     return measured(problem, points, metric)

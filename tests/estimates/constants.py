@@ -1,10 +1,10 @@
 """What each number of an algorithm decides, at its half and at its double.
 
-Settings are frozen dataclasses, all fields of which have defaults; numbers that stand in modules, as most of the finite
-elements' do, are none. In a process of its own a field of every instance is replaced, the quick nets of some families
-are solved, and with the field as it was their truths are found. A row says how many numbers are within their estimates,
-by how much the worst is off, how wide the median estimate is, and what it cost. A field whose rows are all like the
-usual ones decides nothing that these families can tell.
+Settings are frozen dataclasses, all fields of which have defaults; numbers that stand in modules are none. In a process
+of its own a field of every instance is replaced, the quick nets of some families are solved, and with the field as it
+was their truths are found. A row says how many numbers are within their estimates, by how much the worst is off, how
+wide the median estimate is, and what it cost. A field whose rows are all like the usual ones decides nothing that these
+families can tell.
 """
 
 import gc
@@ -26,6 +26,8 @@ FACTORS = (1.0, 0.5, 2.0)
 BY_ROOM = {  # families that a room's settings decide
     "halfspace.elastic": ("layers", "sphere's profile"),
     "halfspace": ("half-space", "laws and profiles", "sphere's profile", "layers"),
+    "fem_adhesion.bodies.layers": ("layers by elements",),
+    "fem_adhesion.discretise": ("block", "layers by elements"),
     "fem_adhesion.finite_strain": ("finite strain",),
 }
 

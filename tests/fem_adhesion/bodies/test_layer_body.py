@@ -166,7 +166,7 @@ def test_strata_deflect_as_their_waves_say(body):
 
 def test_sliding_strata_go_on_with_the_stiffness_of_all(monkeypatch):
     """So that the edge may be near: with the first stratum's alone the deflection is off by 2e-4."""
-    monkeypatch.setattr(bodies_layers, "DIED_OUT", 3.0)
+    monkeypatch.setattr(bodies_layers, "STRATA", bodies_layers.StrataSettings(died_out=3.0))
     body = Layers([Stratum(0.4, 0.0), Stratum(0.8, 0.45, 0.1)], "sliding")
     lines = grid.graded(1.0, 0.2, 3.0, growth=2.0)
     found = discretise(Scene(1.0, body), lines, Discretisation(5)).operator
