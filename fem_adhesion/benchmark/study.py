@@ -25,12 +25,21 @@ from halfspace.equilibrium.events import EVENTS, approach_scale
 from halfspace.values import Array, Estimate
 
 NOISE = np.geomspace(1e-9, 1e-2, 57)  # parts of a number by which a code may err: with more nothing is told
-STEP = 0.2  # of the logarithm of a parameter from trial to trial; the best is refined
-SURE = 7.0  # logarithm of the evidence by which a defect must beat sound numbers: chance finds a thousandth of that
-LIKELY = 2.0  # the same where they cannot be sound: in 24 trials noise of 1 % gave 1.9, a box of 40 beta 2.2
-ALIKE = 3.0  # logarithm of the evidence within which two causes fit alike
-FITS = 4.0  # mean square of deviations in what is allowed up to which a cause fits
-SOUND = 2e-3  # part by which a number may be off beyond its digits and errors: three digits, give or take two units
+
+
+@dataclass(frozen=True)
+class CauseSettings:
+    """By how much a cause must explain numbers better than chance."""
+
+    step: float = 0.2  # of the logarithm of a parameter from trial to trial; the best is refined
+    sure: float = 7.0  # log of the evidence by which a defect must beat sound numbers: chance finds a thousandth of it
+    likely: float = 2.0  # the same where they cannot be sound: in 24 trials noise of 1 % gave 1.9, a box of 40 beta 2.2
+    alike: float = 3.0  # logarithm of the evidence within which two causes fit alike
+    fits: float = 4.0  # mean square of deviations in what is allowed up to which a cause fits
+    sound: float = 2e-3  # part by which a number may be off beyond its digits and errors: two units of the third digit
+
+
+HOW = CauseSettings()
 
 
 @dataclass(frozen=True)
@@ -124,11 +133,11 @@ def _named(fits: Sequence[Sequence[Fit | None]], rows: Sequence[Row]) -> tuple[S
     best = [max(ways, key=lambda fit: fit.evidence) for ways in found.values()]
     ranked = [replace(fit, evidence=fit.evidence - math.log(len(found[fit.cause]))) for fit in best]
     ranked.sort(key=lambda fit: -fit.evidence)
-    alike = [fit for fit in ranked if fit.misfit <= FITS]
+    alike = [fit for fit in ranked if fit.misfit <= HOW.fits]
     chance = next(fit for fit in ranked if fit.cause == "sound")
-    may = chance in alike and all(abs(row.deviation) <= SOUND + row.allowed / row.scale for row in rows)
-    if alike and (chance not in alike or alike[0].evidence - chance.evidence >= (SURE if may else LIKELY)):
-        return [fit.cause for fit in alike if alike[0].evidence - fit.evidence < ALIKE and fit != chance], ranked
+    may = chance in alike and all(abs(row.deviation) <= HOW.sound + row.allowed / row.scale for row in rows)
+    if alike and (chance not in alike or alike[0].evidence - chance.evidence >= (HOW.sure if may else HOW.likely)):
+        return [fit.cause for fit in alike if alike[0].evidence - fit.evidence < HOW.alike and fit != chance], ranked
     return ["sound" if may else "cannot-tell"], ranked
 
 
@@ -168,7 +177,7 @@ def _fitted(variant: Variant, problem: Problem, rows: Sequence[Row]) -> Fit | No
 
     place = first
     if first < last:
-        trials = np.linspace(first, last, math.ceil((last - first) / STEP) + 1)
+        trials = np.linspace(first, last, math.ceil((last - first) / HOW.step) + 1)
         near = int(np.argmin([worse(trial) for trial in trials]))
         ends = trials[max(near - 1, 0)], trials[min(near + 1, trials.size - 1)]
         place = float(minimize_scalar(worse, bounds=ends, method="bounded", options={"xatol": 1e-10}).x)

@@ -12,6 +12,7 @@ import argparse
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from itertools import product
 from operator import itemgetter
@@ -30,8 +31,19 @@ from halfspace.atlas import build, sphere
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.values import Array, Estimate
 
-RTOL = 1e-5
-BIRTHS = (10, 8)  # nodes of the birth of folds in (R/eps)^(-1/4) and Poisson's ratio
+
+@dataclass(frozen=True)
+class AtlasSettings:
+    """Pieces of the atlas of spheres, and how closely it is fitted."""
+
+    rtol: float = 1e-5
+    births: tuple[int, int] = (10, 8)  # nodes of the birth of folds in (R/eps)^(-1/4) and Poisson's ratio
+    noise: float = 1e-6  # of what is fitted, as it is expected, beside a third of the error that `trace` states
+    check_points: int = 8
+
+
+HOW = AtlasSettings()
+
 POINTS = {"past": (190, 190, 150), "below": (60, 50, 40)}  # on each piece of R/eps, past the birth of folds and below
 EDGES = ((5.0, 7.0, 10.0, 15.0, 22.5, 50.0, 150.0, 1e3, 1e5), (0.0, 0.245, 0.49))
 """R/eps and Poisson's ratios of points on edges."""
@@ -40,8 +52,6 @@ JUMPS = ((0.2, 0.4, 0.2), (0.2, 0.4, 0.1))
 FALL = {"pull_off": ((0.3, 0.5, 0.3), (0.2, 0.4, 0.1)), "jump_on": JUMPS, "jump_off": JUMPS}
 """Fall that is expected of a coefficient of A and B by each degree in ln(R/eps), tabor and Poisson's ratio."""
 
-NOISE = 1e-6  # of what is fitted, as it is expected, beside a third of the error that `trace` states
-CHECK_POINTS = 8
 GOLDEN = 1.2207440846057596  # root of g^4 = g + 1
 
 Point = tuple[float, ...]
@@ -51,16 +61,16 @@ Node = Callable[[Point], Mapping[str, Estimate]]
 def solved(point: Point) -> dict[str, Estimate]:
     """Events at a Tabor parameter, R/eps and Poisson's ratio, or the birth of folds at the last two."""
     if len(point) == 2:
-        return dict(MODELS["first_jump"].solve(case_of("first_jump", None, *point, RTOL)))
+        return dict(MODELS["first_jump"].solve(case_of("first_jump", None, *point, HOW.rtol)))
     tabor, ratio, poisson = point
-    path = trace(Scene(tabor, Hemisphere(radius_ratio=ratio, poisson=poisson)), rtol=RTOL, to_load=TO_LOAD)
+    path = trace(Scene(tabor, Hemisphere(radius_ratio=ratio, poisson=poisson)), rtol=HOW.rtol, to_load=TO_LOAD)
     every = product((name for name in sphere.DEGREES if name in path.events), sphere.NUMBERS)
     return {f"{name}.{number}": path.events[name].estimate(number) for name, number in every}
 
 
 def births(node: Node) -> tuple[Array, float]:
     """Coefficients of the logarithm of the birth of folds, and the relative error: the nodes' and the series' tail."""
-    x, z = (chebpts1(count) for count in BIRTHS)
+    x, z = (chebpts1(count) for count in HOW.births)
     low, high = sphere.RATIOS[-1] ** -0.25, sphere.RATIOS[0] ** -0.25
     ratios = ((low + high) / 2 + (high - low) / 2 * x) ** -4
     found = [[node((ratio, nu))[CRITICAL] for nu in poissons(z).tolist()] for ratio in ratios.tolist()]
@@ -120,7 +130,7 @@ def built(node: Node, digest: str) -> dict[str, Any]:
     return {
         "source": {
             "command": "make atlas",
-            "what": f"fem_adhesion.trace(Scene(tabor, Hemisphere(radius_ratio, poisson)), rtol={RTOL:g}), 3-9 law",
+            "what": f"fem_adhesion.trace(Scene(tabor, Hemisphere(radius_ratio, poisson)), rtol={HOW.rtol:g}), 3-9 law",
             "version": version("fem-adhesion"),
             "digest": digest,
         },
@@ -148,7 +158,7 @@ def fitted(
         products = [chebvander(place, most)[:, i] for place, most, i in zip(places, degrees, terms, strict=True)]
         expected.append(np.prod(np.array(fall)[:, None] ** terms, axis=0))
         blocks.append(size[:, None] * np.prod(products, axis=0) * expected[-1])
-    noise = np.sqrt(NOISE**2 + (own / 3) ** 2)
+    noise = np.sqrt(HOW.noise**2 + (own / 3) ** 2)
     U, s, V = np.linalg.svd(np.hstack(blocks) / noise[:, None])
     parts, s = U.T @ (b / noise), np.pad(s, (0, len(b)))[: len(b)]
     apart = noise * np.abs(U @ (parts / (1 + s**2))) / (U**2 @ (1 / (1 + s**2)))
@@ -208,7 +218,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _report(_deviations(node, given.check, given.seed))
     content = built(node, digest)
     _write(content)
-    _write(content | {"check_points": list(_deviations(node, CHECK_POINTS, 0))})  # read from the file that there is now
+    _write(content | {"check_points": list(_deviations(node, HOW.check_points, 0))})  # from the file that there is now
     print(f"\n{sphere.FILE}: {sphere.FILE.stat().st_size / 1000:.0f} kB")
     return 0
 

@@ -18,14 +18,25 @@ from halfspace.values import Array
 
 LEVEL = 0.95  # of all intervals
 NORMAL = float(norm.isf((1 - LEVEL) / 2))  # standard errors in half an interval
-BLIND = 1e6  # largest ratio of two standard errors
-FARTHEST = 12.0  # coordinates beyond which nothing is asked for: a factor of 1e5
-APART = math.log(10) / 2  # of the Tabor parameters from which fits start
-ROUNDS = 5  # of dividing runs and fitting; two are usual
+
+
+@dataclass(frozen=True)
+class LikelihoodSettings:
+    """Where the likelihood is looked for, and by which steps."""
+
+    blind: float = 1e6  # largest ratio of two standard errors
+    farthest: float = 12.0  # coordinates beyond which nothing is asked for: a factor of 1e5
+    apart: float = math.log(10) / 2  # of the Tabor parameters from which fits start
+    rounds: int = 5  # of dividing runs and fitting; two are usual
+    far_off: float = 3.0  # times the measured pull-off force, or a part of it, that no fit has
+    wall: float = 1e4  # residual of a factor of e beyond: more than those of all samples of a wrong model
+    step: float = 1e-3  # of derivatives by coordinates and ln tabor: they see past the kinks and errors of a curve
+    shift: float = 0.01  # of derivatives by coordinates and ln tabor: they see past the kinks and errors of a curve
+
+
+FITS = LikelihoodSettings()
+
 MEAN_PULL_OFF = 1.75 * math.pi  # R dgamma, between JKR's and Bradley's
-FAR_OFF = 3.0  # times the measured pull-off force, or a part of it, that no fit has
-WALL = 1e4  # residual of a factor of e beyond: more than those of all samples of a wrong model
-STEP, SHIFT = 1e-3, 0.01  # of derivatives by coordinates and ln tabor: they see past the kinks and errors of a curve
 
 SCALES = ("radius", "modulus", "work_of_adhesion", "spacing", "stiffness", "sensitivity")
 """Positive parameters: the fitter moves their logarithms."""
@@ -66,7 +77,7 @@ class Problem:
         """Value at a coordinate."""
         value: float = getattr(self.start, name)
         if name in SCALES:
-            return value * math.exp(min(max(x, -FARTHEST), FARTHEST))
+            return value * math.exp(min(max(x, -FITS.farthest), FITS.farthest))
         moved = value + x * self._units[name]
         return moved if name == "contact_point" else max(moved, 0.0)
 
@@ -119,12 +130,13 @@ class Problem:
     def _wall(self, apparatus: Apparatus) -> float:
         """Residual that keeps the pull-off near the data's: a contact point far off makes a minimum without one."""
         force = MEAN_PULL_OFF * apparatus.units.load / apparatus.sensitivity
-        return WALL * max(abs(math.log(force / self.pull_off)) - math.log(FAR_OFF), 0.0)
+        return FITS.wall * max(abs(math.log(force / self.pull_off)) - math.log(FITS.far_off), 0.0)
 
     def jacobian(self, x: Array) -> Array:
         """Derivatives of the residuals by the coordinates."""
         here = self.residuals(x)
-        return np.column_stack([(self.residuals(x + step) - here) / step.max() for step in STEP * np.diag(self._sizes)])
+        steps = FITS.step * np.diag(self._sizes)
+        return np.column_stack([(self.residuals(x + step) - here) / step.max() for step in steps])
 
     @property
     def _sizes(self) -> Array:
@@ -137,7 +149,7 @@ class Problem:
         If `loose`, the coordinates are a first guess, and the samples alone decide on the first division.
         """
         runs = self.data.runs
-        for i in range(ROUNDS):
+        for i in range(FITS.rounds):
             divided = self.data.divided(self.branches(self.apparatus(x)), loose=loose and not i)
             problem = replace(self, data=divided)
             found = least_squares(
@@ -219,8 +231,8 @@ class Best:
     @cached_property
     def whole(self) -> Array:
         """Jacobian by the coordinates and, last, ln tabor."""
-        shifted = self.problem.at(self.problem.log_tabor + SHIFT, self.x).residuals(self.x)
-        return np.column_stack([self.jacobian, (shifted - self.rest) / SHIFT])
+        shifted = self.problem.at(self.problem.log_tabor + FITS.shift, self.x).residuals(self.x)
+        return np.column_stack([self.jacobian, (shifted - self.rest) / FITS.shift])
 
     @cached_property
     def slope(self) -> float:
@@ -232,7 +244,7 @@ class Best:
     @property
     def tabor_error(self) -> float:
         """Standard error of ln tabor by the curvature, within what is of use for a step."""
-        return float(np.clip(math.sqrt(self.scale * inverse(self.whole)[-1, -1]), 1e-4, APART / 2))
+        return float(np.clip(math.sqrt(self.scale * inverse(self.whole)[-1, -1]), 1e-4, FITS.apart / 2))
 
     def coordinate(self, name: str) -> float:
         """Coordinate of a parameter; of the spacing its logarithm."""
@@ -242,8 +254,8 @@ class Best:
         """Derivatives of a parameter's coordinate by all coordinates and ln tabor."""
         if name != "spacing":
             return np.append(np.array([each == name for each in self.problem.fitted], float), 0.0)
-        moved = [self.problem.apparatus(self.x + step).spacing for step in STEP * np.eye(self.x.size)]
-        return np.append(np.log(np.array(moved) / self.apparatus.spacing) / STEP, -1.0)
+        moved = [self.problem.apparatus(self.x + step).spacing for step in FITS.step * np.eye(self.x.size)]
+        return np.append(np.log(np.array(moved) / self.apparatus.spacing) / FITS.step, -1.0)
 
     def half_width(self, name: str, sharper: Array | float = 1.0, exact: str = "") -> float:
         """Half of a parameter's interval by the curvature, with residuals so many times as sharp, or one more exact."""
@@ -259,4 +271,4 @@ def inverse(jacobian: Array) -> Array:
     What the data do not show at all has a standard error of `BLIND` times that of what they show best.
     """
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
-    return np.asarray((directions.T / np.maximum(sizes, sizes[0] / BLIND) ** 2) @ directions)
+    return np.asarray((directions.T / np.maximum(sizes, sizes[0] / FITS.blind) ** 2) @ directions)

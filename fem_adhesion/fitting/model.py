@@ -19,13 +19,22 @@ from halfspace.scaling import Units, contact_modulus, equivalent_radius
 from halfspace.theories import curves
 from halfspace.values import Array
 
-COUNT = 801  # places on a curve of the atlas; linear between them, the load is within 1e-3 R dgamma
-BEYOND = 160  # places on each of its two continuations
-EVEN = np.linspace(0.0, 1.0, BEYOND)
-FARTHEST = 1e5  # approach in (1 + tabor) eps to which the attraction is continued
+
+@dataclass(frozen=True)
+class ModelSettings:
+    """Places on the curves that are fitted, and how far these go."""
+
+    count: int = 801  # places on a curve of the atlas; linear between them, the load is within 1e-3 R dgamma
+    beyond: int = 160  # places on each of its two continuations
+    farthest: float = 1e5  # approach in (1 + tabor) eps to which the attraction is continued
+    widest: float = 25.0  # contact radius in beta to which the compression is continued: a load of 2e4 R dgamma
+
+
+HOW = ModelSettings()
+
+EVEN = np.linspace(0.0, 1.0, HOW.beyond)
 STIFFEST = 1e-4  # Tabor parameter up to which a sphere is rigid
 SOFTEST = 1e4  # Tabor parameter from which on curves are JKR's but for a hundredth of tabor eps
-WIDEST = 25.0  # contact radius in beta to which the compression is continued: a load of 2e4 R dgamma
 
 Theory = Callable[[Units], Array]
 """Approach in eps and load in R dgamma, (2, n), from separation to compression, of a contact."""
@@ -42,11 +51,11 @@ def by_atlas(units: Units) -> Array:
     tabor = max(units.tabor, LEAST)
     if tabor > MOST:
         return _closed(curves.jkr_with_reach, units)
-    curve = atlas.table(tabor, COUNT)
+    curve = atlas.table(tabor, HOW.count)
     last, push = curve[:, -1]
     slope = np.gradient(curve[1, -3:], curve[0, -3:], edge_order=2)[-1]
     a = slope * tabor / 2  # of the Hertz contact that is as stiff, dW/dalpha* = 2 a/mu
-    wider = a * (WIDEST / a) ** EVEN[1:]
+    wider = a * (HOW.widest / a) ** EVEN[1:]
     alpha, load = last + tabor * (wider**2 - a**2), push + 4 / 3 * (wider**3 - a**3)
     return attracted(np.hstack([curve, [alpha, load]]), tabor, 2)
 
@@ -54,13 +63,13 @@ def by_atlas(units: Units) -> Array:
 def attracted(curve: Array, tabor: float, power: float) -> Array:
     """Curve with the attraction before it, which falls by a power of the gap."""
     first, pull = curve[:, 0]
-    h = (1 - first) * (FARTHEST * (1 + tabor) / (1 - first)) ** EVEN[:0:-1]
+    h = (1 - first) * (HOW.farthest * (1 + tabor) / (1 - first)) ** EVEN[:0:-1]
     return np.hstack([[1 - h, pull * ((1 - first) / h) ** power], curve])
 
 
 def _closed(curve: Callable[[float, curves.Sampling], Array], units: Units) -> Array:
     """Curve of a theory in closed form."""
-    return curve(units.tabor, curves.Sampling(FARTHEST * (1 + units.tabor), WIDEST, COUNT))[:2]
+    return curve(units.tabor, curves.Sampling(HOW.farthest * (1 + units.tabor), HOW.widest, HOW.count))[:2]
 
 
 def by_jkr(units: Units) -> Array:

@@ -15,18 +15,27 @@ from fem_adhesion.fitting.measured import APPROACH, ForceCurve
 from halfspace.errors import InputError
 from halfspace.values import Array, Mask, Valued
 
-BEYOND = 5.0  # standard deviations of the noise beyond which a force is a contact's or a jump's
-FLAT = 0.1  # share of a segment that the baseline has at least, and of the slope in contact that it has at most
-APART = 0.05  # share of the baseline next to the contact that is left out, for the attraction before it
-FINEST = 1e-4  # share of the largest force that is no contact's, even where there is no noise
+
+@dataclass(frozen=True)
+class PrepareSettings:
+    """What of a measured curve is noise, baseline, contact or a jump."""
+
+    beyond: float = 5.0  # standard deviations of the noise beyond which a force is a contact's or a jump's
+    flat: float = 0.1  # share of a segment that the baseline has at least, and of the slope in contact at most
+    apart: float = 0.05  # share of the baseline next to the contact that is left out, for the attraction before it
+    finest: float = 1e-4  # share of the largest force that is no contact's, even where there is no noise
+    rounds: int = 4  # of clipping and of moving the contact, after which neither changes
+    turn: int = 50  # samples next to the turn, which are in contact if any are
+    run: int = 5  # samples in a row beyond the noise that are a contact, or equal ones a detector's limit
+    rounded: float = 1e-9  # of its way, by which a travel scatters where a file's digits end; converters resolve 1e-8
+    settled: float = 0.03  # share of the steepest step of a jump below which it is over; amplifiers ring and creep
+    smeared: int = 10  # samples over which a jump is seen at most: those of the curves tried are over 2 to 7
+
+
+HOW = PrepareSettings()
+
 PERIODS = np.geomspace(200e-9, 600e-9, 250).tolist()  # m, of half the wavelengths of lasers, 400 to 1200 nm
-ROUNDS = 4  # of clipping and of moving the contact, after which neither changes
-TURN = 50  # samples next to the turn, which are in contact if any are
-RUN = 5  # samples in a row beyond the noise that are a contact, or equal at an extreme force a detector's limit
 MAD = 1.4826  # standard deviation of normal noise in its median absolute deviation
-ROUNDED = 1e-9  # share of its way by which a travel scatters where a file's digits end; converters resolve 1e-8 at best
-SETTLED = 0.03  # share of the steepest step of a jump below which it is over; amplifiers ring and creep
-SMEARED = 10  # samples over which a jump is seen at most: amplifiers smear those of the curves tried over 2 to 7
 
 
 @dataclass(frozen=True)
@@ -131,14 +140,14 @@ def prepare(curve: ForceCurve) -> Prepared:
     steps = float(np.std(np.concatenate([np.diff(part) for part in left])))
     _require_unsaturated(curve.force, above, noise)
     contact = _contact(curve.travel[curve.approach], above[curve.approach])
-    on = slice(far["approach"].end - SMEARED, curve.approach.stop)
+    on = slice(far["approach"].end - HOW.smeared, curve.approach.stop)
     jump_on = _jump(-above, on, steps)
-    if jump_on is None and above[curve.approach].max() < BEYOND * noise:
-        raise InputError(_no_contact("approach", above[curve.approach], BEYOND * noise))
+    if jump_on is None and above[curve.approach].max() < HOW.beyond * noise:
+        raise InputError(_no_contact("approach", above[curve.approach], HOW.beyond * noise))
     for name, way in ways.items():
         _require_flat(name, far[name], curve.travel[way], curve.force[way])
     deepest = curve.retract.start + int(np.argmin(above[curve.retract]))
-    off = slice(max(deepest - SMEARED, curve.retract.start), above.size - far["retract"].end + SMEARED)
+    off = slice(max(deepest - HOW.smeared, curve.retract.start), above.size - far["retract"].end + HOW.smeared)
     return Prepared(
         curve,
         far,
@@ -161,14 +170,14 @@ def _steadied(curve: ForceCurve) -> ForceCurve:
     if curve.coordinate == APPROACH:
         return curve
     smooth, recorded, steady = curve.travel.copy(), 0.0, 0.0
-    for part, near in ((curve.approach, slice(-TURN, None)), (curve.retract, slice(TURN))):
-        smooth[part] = savgol_filter(curve.travel[part], int(FLAT * (part.stop - part.start)) | 1, 3)
+    for part, near in ((curve.approach, slice(-HOW.turn, None)), (curve.retract, slice(HOW.turn))):
+        smooth[part] = savgol_filter(curve.travel[part], int(HOW.flat * (part.stop - part.start)) | 1, 3)
         force, own, slow = (each[part][near] for each in (curve.force, curve.travel, smooth))
         stiffness = np.polyfit(slow - slow.mean(), force, 1)[0]
         recorded += float(np.var(np.diff(force - stiffness * own)))
         steady += float(np.var(np.diff(force - stiffness * slow)))
     scatter = float(np.std(curve.travel - smooth))
-    if recorded <= steady or scatter < ROUNDED * float(np.ptp(curve.travel)):
+    if recorded <= steady or scatter < HOW.rounded * float(np.ptp(curve.travel)):
         return curve
     why = (
         f"The travel scatters by {engineering(scatter, 'm')}, which the force does not follow: it was smoothed in time."
@@ -182,17 +191,17 @@ def _far(name: str, travel: Array, force: Array) -> Far:
     The search starts from a level and from the drift of the first half; the one that goes farther is right,
     but not to the end of a segment that is one line in contact.
     """
-    least, lag = int(FLAT * travel.size), travel.size // 20
+    least, lag = int(HOW.flat * travel.size), travel.size // 20
     level, half = float(np.median(force[:least])), travel.size // 2
     rise, way = (float(np.median(each[lag:half] - each[: half - lag])) for each in (force, travel))
     drift = rise / way if way else 0.0
-    limit = max(FLAT / 2 * float(np.max(np.abs(force - level))), BEYOND * float(np.std(force[:least])))
+    limit = max(HOW.flat / 2 * float(np.max(np.abs(force - level))), HOW.beyond * float(np.std(force[:least])))
     middle = float(np.median(travel[:least]))
     found = [_left(travel, force, Polynomial([level - drift * middle, drift]), limit) for drift in (0.0, drift)]
     line, leaves = max([each for each in found if each[1] < travel.size] or found, key=lambda each: each[1])
     if leaves == travel.size:
         raise InputError(_no_contact(name, force - line(travel), limit))
-    end = int((1 - APART) * leaves)
+    end = int((1 - HOW.apart) * leaves)
     if end < least:
         many = f"{end} of {travel.size} samples are on a line far from the sample"
         raise InputError(f"no baseline in the {name}: {many}, limit: {least}; begin farther away")
@@ -202,13 +211,13 @@ def _far(name: str, travel: Array, force: Array) -> Far:
 def _left(travel: Array, force: Array, line: Polynomial, limit: float) -> tuple[Polynomial, int]:
     """Line through the far part and the sample at which the force leaves it, beginning with a line and a limit."""
     leaves = 0
-    for _ in range(ROUNDS):
+    for _ in range(HOW.rounds):
         leaves = _first_run(np.abs(force - line(travel)) > limit)
-        end = int((1 - APART) * leaves)
-        if leaves == force.size or end < FLAT * force.size:
+        end = int((1 - HOW.apart) * leaves)
+        if leaves == force.size or end < HOW.flat * force.size:
             break
         line, noise = _line(travel[:end], force[:end])
-        limit = max(BEYOND * noise, FINEST * float(np.max(np.abs(force - force[0]))))
+        limit = max(HOW.beyond * noise, HOW.finest * float(np.max(np.abs(force - force[0]))))
     return line, leaves
 
 
@@ -216,26 +225,26 @@ def _require_flat(name: str, far: Far, travel: Array, force: Array) -> None:
     """Refuse a baseline that rises as the force does in contact: it is one."""
     slope, beyond = abs(float(far.line.deriv()(far.edge))), travel >= far.edge
     steep = float(np.ptp(force[beyond]) / np.ptp(travel[beyond]))
-    if slope > FLAT * steep:
+    if slope > HOW.flat * steep:
         rises = f"the force changes by {slope:.2g} N/m far from the sample and {steep:.2g} N/m near it"
-        raise InputError(f"no baseline in the {name}: {rises}, limit: {FLAT:g} of that; begin farther away")
+        raise InputError(f"no baseline in the {name}: {rises}, limit: {HOW.flat:g} of that; begin farther away")
 
 
 def _no_contact(name: str, above: Array, limit: float) -> str:
     """Say that the force stays on its baseline."""
     most, needed = (engineering(number, "N") for number in (float(np.abs(above).max()), limit))
-    off = f"the force is at most {most} off its baseline, never {RUN} samples in a row by {needed}"
+    off = f"the force is at most {most} off its baseline, never {HOW.run} samples in a row by {needed}"
     remedy = "press until the force rises, begin and end far apart"
-    return f"no contact in the {name}: {off}, limit: {BEYOND:g} standard deviations; {remedy}"
+    return f"no contact in the {name}: {off}, limit: {HOW.beyond:g} standard deviations; {remedy}"
 
 
 def _line(travel: Array, force: Array) -> tuple[Polynomial, float]:
     """Line through most samples, a parabola where the data demand it, and their spread about it."""
     kept = np.ones(force.size, dtype=bool)
-    for _ in range(ROUNDS):
+    for _ in range(HOW.rounds):
         line = Polynomial.fit(travel[kept], force[kept], 1)
         off = np.abs(force - line(travel))
-        kept = off <= BEYOND * MAD * np.median(off)
+        kept = off <= HOW.beyond * MAD * np.median(off)
     bent = Polynomial.fit(travel[kept], force[kept], 2)
     straight, curved = ((force - each(travel))[kept] for each in (line, bent))
     return (bent, float(np.std(curved))) if _demanded(straight, curved, 1) else (line, float(np.std(straight)))
@@ -267,12 +276,12 @@ def _demanded(before: Array, after: Array, parameters: int) -> bool:
         return bool(np.any(before))
     correlation = max(0.0, float(np.mean(after[1:] * after[:-1]) / np.mean(after**2)))
     independent = after.size * (1 - correlation) / (1 + correlation)
-    return bool(np.sum(before**2) > (1 + parameters * BEYOND**2 / independent) * np.sum(after**2))
+    return bool(np.sum(before**2) > (1 + parameters * HOW.beyond**2 / independent) * np.sum(after**2))
 
 
 def _first_run(beyond: Mask) -> int:
     """Index of the first of `RUN` samples in a row that are beyond; the number of samples if there are none."""
-    runs = np.flatnonzero(np.convolve(beyond, np.ones(RUN), "valid") == RUN)
+    runs = np.flatnonzero(np.convolve(beyond, np.ones(HOW.run), "valid") == HOW.run)
     return int(runs[0]) if runs.size else beyond.size
 
 
@@ -280,10 +289,10 @@ def _require_unsaturated(force: Array, above: Array, noise: float) -> None:
     """Refuse equal forces in a row at the largest or the least force, unless that is the baseline's."""
     for extreme in (force.max(), force.min()):
         at = _first_run(force == extreme)
-        if at < force.size and abs(above[at]) > BEYOND * noise:
+        if at < force.size and abs(above[at]) > HOW.beyond * noise:
             raise InputError(
                 f"the force is saturated: it stays at {engineering(float(extreme), 'N')} from sample {at} on, limit: "
-                f"less than {RUN} equal samples at an extreme; press less or extend the detector's range"
+                f"less than {HOW.run} equal samples at an extreme; press less or extend the detector's range"
             )
 
 
@@ -300,10 +309,10 @@ def _jump(force: Array, where: slice, steps: float) -> slice | None:
     if not rises.size:  # the force was least where the baseline begins already
         return None
     steepest = int(np.argmax(rises))
-    jumps = rises > max(BEYOND * steps, SETTLED * rises[steepest])
+    jumps = rises > max(HOW.beyond * steps, HOW.settled * rises[steepest])
     if not jumps[steepest]:
         return None
     before, after = np.flatnonzero(~jumps[:steepest]), np.flatnonzero(~jumps[steepest:])
     last = where.start + (int(before[-1]) + 1 if before.size else 0)
     first = where.start + steepest + (int(after[0]) if after.size else jumps.size - steepest)
-    return slice(last, first) if first - last <= SMEARED else None
+    return slice(last, first) if first - last <= HOW.smeared else None

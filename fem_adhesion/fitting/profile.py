@@ -13,18 +13,26 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.special import ndtr
 from scipy.stats import chi2 as chi2_law
 
-from fem_adhesion.fitting.likelihood import APART, LEVEL, SCALES, WALL, Best, Problem
+from fem_adhesion.fitting.likelihood import FITS, LEVEL, SCALES, Best, Problem
 from fem_adhesion.fitting.model import by_atlas
 from halfspace.errors import tried
 from halfspace.values import Array
 
-NEARLY = 1.1  # chi square in the least one, or in that of noise, up to which a fit counts as one
-SHALLOW = 0.01  # of a squared standard error: how far a valley of the profile falls that is not looked into
-STILL = 0.1  # of a standard error: to which a least chi square is looked for
-NEAR = 0.05  # of the distance between fits within and beyond a profile, to which its end is looked for
-NODES = (0.25, 0.5, 0.75)  # of the way from the best Tabor parameter to either end, where the profile is fitted
-FINE = 401  # places between these on which intervals are read off
-RANGE = 7.0  # logarithms beyond which an end is open: a factor of a thousand
+
+@dataclass(frozen=True)
+class ProfileSettings:
+    """How closely the profile of the likelihood is looked at."""
+
+    nearly: float = 1.1  # chi square in the least one, or in that of noise, up to which a fit counts as one
+    shallow: float = 0.01  # of a squared standard error: how far a valley of the profile falls that is not looked into
+    still: float = 0.1  # of a standard error: to which a least chi square is looked for
+    near: float = 0.05  # of the distance between fits within and beyond a profile, to which its end is looked for
+    nodes: tuple[float, ...] = (0.25, 0.5, 0.75)  # of the way from the best Tabor parameter to either end, for fits
+    fine: int = 401  # places between these on which intervals are read off
+    range: float = 7.0  # logarithms beyond which an end is open: a factor of a thousand
+
+
+HOW = ProfileSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +61,7 @@ class Profile:
             rows.append((one.chi2 - self.best.chi2, one.coordinate(name), gradient @ one.covariance @ gradient))
         at, table = np.array([one.problem.log_tabor for one in self.fits]), np.array(rows)
         if len(at) > 1:
-            fine = np.unique(np.append(np.linspace(at[0], at[-1], FINE), at))
+            fine = np.unique(np.append(np.linspace(at[0], at[-1], HOW.fine), at))
             at, table = fine, PchipInterpolator(at, table)(fine)
         above, middle, variance = table[table[:, 0] <= rise].T
         half = np.sqrt((rise - above) * variance)
@@ -68,7 +76,7 @@ class Profile:
             within = [one.chi2 - self.best.chi2 <= rise for one in (self.fits[0], self.fits[-1])]
             rigid, soft = (is_open and low for is_open, low in zip(self.ends, within, strict=True))
             return None if soft else math.exp(ends[0]), None if rigid else math.exp(ends[1])
-        known = [name not in SCALES or abs(end - middle) < RANGE for end in ends]
+        known = [name not in SCALES or abs(end - middle) < HOW.range for end in ends]
         low, high = (
             self.best.problem.value(name, end) if is_known else None for end, is_known in zip(ends, known, strict=True)
         )
@@ -104,7 +112,7 @@ def profiled(problem: Problem, tabors: Sequence[float], limits: tuple[float, flo
     for at in (round(math.log(tabor), 9) for tabor in tabors):
         here = problem.at(at, np.zeros(len(problem.fitted)))
         fits[at] = here.settled(here.first(), loose=True)
-    if problem.theory is by_atlas and min(fits.values(), key=lambda one: one.chi2).scale > NEARLY:
+    if problem.theory is by_atlas and min(fits.values(), key=lambda one: one.chi2).scale > HOW.nearly:
         _exchange(problem, fits)
     least, most = (round(math.log(limit), 9) for limit in limits)
     scan = Scan(problem, (least, most), fits)
@@ -147,7 +155,7 @@ class Scan:
 
     def _refused(self, near: Best, at: float) -> Best:
         """Stand-in where a traced part has no such contact, as a sphere less wide than its spacing: most unlikely."""
-        chi2 = self.best.chi2 * (1 + WALL)
+        chi2 = self.best.chi2 * (1 + FITS.wall)
         return replace(near, problem=replace(near.problem, log_tabor=at), chi2=chi2)
 
     def rise(self, at: float) -> float:
@@ -168,22 +176,22 @@ class Scan:
         Valleys are told by slopes, and by values where a fit is lower than both neighbours and not the least.
         """
         while (low := self.best.problem.log_tabor) in (min(self.fits), max(self.fits)) and low not in self.limits:
-            self.fit(low + (APART if low == max(self.fits) else -APART))
+            self.fit(low + (FITS.apart if low == max(self.fits) else -FITS.apart))
         for pair in pairwise(sorted(self.fits)):
             left, right = (self.fits[at] for at in pair)
             if self._is_valley(left, right):
-                near = STILL * min(left, right, key=lambda one: one.chi2).tabor_error
+                near = HOW.still * min(left, right, key=lambda one: one.chi2).tabor_error
                 brentq(lambda at: self.fit(at).slope, *pair, xtol=near)
         grid = sorted(self.fits)
         for before, at, after in zip(grid, grid[1:], grid[2:], strict=False):
             here = self.fits[at]
-            lowest = here.chi2 <= min(self.fits[before].chi2, self.fits[after].chi2, NEARLY * self.best.chi2)
-            if lowest and abs(here.slope) * here.tabor_error > STILL * self.best.scale:
+            lowest = here.chi2 <= min(self.fits[before].chi2, self.fits[after].chi2, HOW.nearly * self.best.chi2)
+            if lowest and abs(here.slope) * here.tabor_error > HOW.still * self.best.scale:
                 minimize_scalar(
                     lambda at: self.fit(at).chi2,
                     bounds=(before, after),
                     method="bounded",
-                    options={"xatol": STILL * here.tabor_error},
+                    options={"xatol": HOW.still * here.tabor_error},
                 )
 
     def _is_valley(self, left: Best, right: Best) -> bool:
@@ -192,12 +200,12 @@ class Scan:
         Where it is convex it is above its tangents. By values alone a valley is not seen if it is narrower than fits
         are apart and lies on a slope: five of 400 curves had the truth in one. Beside a refused fit none is looked for.
         """
-        if max(left.chi2, right.chi2) > WALL * self.best.chi2 or not left.slope < 0 < right.slope:
+        if max(left.chi2, right.chi2) > FITS.wall * self.best.chi2 or not left.slope < 0 < right.slope:
             return False
         apart = right.problem.log_tabor - left.problem.log_tabor
         meet = (right.chi2 - left.chi2 - right.slope * apart) / (left.slope - right.slope)
         least = left.chi2 + left.slope * meet
-        return min(left.chi2, right.chi2) - least > SHALLOW * self.best.scale and self._excess(least) < 0
+        return min(left.chi2, right.chi2) - least > HOW.shallow * self.best.scale and self._excess(least) < 0
 
     def follow(self, side: int) -> bool:
         """Fit down and up to where the profile has risen, on the side of smaller (-1) or larger ones; False if found.
@@ -212,7 +220,7 @@ class Scan:
             step *= 2
         is_open = self.rise(far) < 0
         if not is_open:
-            far = float(brentq(self.rise, near, far, xtol=NEAR * abs(far - near)))
-        for part in NODES:
+            far = float(brentq(self.rise, near, far, xtol=HOW.near * abs(far - near)))
+        for part in HOW.nodes:
             self.fit(middle + part * (far - middle))
         return is_open

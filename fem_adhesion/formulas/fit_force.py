@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,15 +16,25 @@ from halfspace.theories import fits
 from halfspace.values import Array
 
 PIECES = ((0.01, 0.4), (0.4, 3.0), (3.0, 300.0))  # of Tabor parameters
-TERMS = 7  # of the sum over z
-DEGREE = 8  # of its coefficients in ln(tabor)
-CUSP_DEGREE = 10  # of the coefficients of the cubic
-FREE_DEGREE = 4  # the same on the first piece, where no fold is near
-TABORS = 24  # curves that are fitted to on a piece
-LEAST_SLOPE = 0.05  # of the cubic there
-ROUNDS = 20  # repetitions with weights of Lawson
-DIGITS = 8
-MOST_LOAD = 5.5  # R dgamma, to which a curve is fitted
+
+
+@dataclass(frozen=True)
+class ForceSettings:
+    """Terms of the formula for the force, and the curves that it is fitted to."""
+
+    terms: int = 7  # of the sum over z
+    degree: int = 8  # of its coefficients in ln(tabor)
+    cusp_degree: int = 10  # of the coefficients of the cubic
+    free_degree: int = 4  # the same on the first piece, where no fold is near
+    tabors: int = 24  # curves that are fitted to on a piece
+    least_slope: float = 0.05  # of the cubic there
+    rounds: int = 20  # repetitions with weights of Lawson
+    digits: int = 8
+    most_load: float = 5.5  # R dgamma, to which a curve is fitted
+
+
+HOW = ForceSettings()
+
 FREE = ((0.01, 0.13, 0.2), (0.05, 0.06, 0.25), (0.1, -0.1, 0.24), (0.2, -0.344, 0.2), (0.3, -0.5305, 0.157))
 """Tabor parameter, middle and slope of the cubic from which the fit on the first piece begins."""
 FOLDS = ((0.35, 0.4, 0.45, 0.5, 0.6, 0.65, 0.69), (-0.63, -0.72, -0.81, -0.9007, -1.07204, -1.15478, -1.21958))
@@ -32,12 +43,12 @@ FOLDS = ((0.35, 0.4, 0.45, 0.5, 0.6, 0.65, 0.69), (-0.63, -0.72, -0.81, -0.9007,
 
 def piece(low: float, high: float) -> dict[str, Any]:
     """Coefficients on one piece of Tabor parameters, of which ``halfspace/theories/force.json`` has a list."""
-    curves = _curves(_tabors(low, high, TABORS))
+    curves = _curves(_tabors(low, high, HOW.tabors))
     t = fits.place(curves["tabor"], low, high)
     middle, slope = _free(low, high, t, curves) if low < FOLDS[0][0] else _folds(low, high)
-    coefficients = _sums(t, curves, middle, slope, ROUNDS)[0].reshape(TERMS, DEGREE + 1)
+    coefficients = _sums(t, curves, middle, slope, HOW.rounds)[0].reshape(HOW.terms, HOW.degree + 1)
     numbers = {"middle": middle, "slope": slope, "sums": coefficients}
-    return {"from": low, "to": high} | {name: rounded(values, DIGITS) for name, values in numbers.items()}
+    return {"from": low, "to": high} | {name: rounded(values, HOW.digits) for name, values in numbers.items()}
 
 
 def _tabors(low: float, high: float, count: int) -> Array:
@@ -58,7 +69,7 @@ def _curves(tabors: Array) -> dict[str, Array]:
             states = curve.states(300) if whole else curve.at(approach=at, branch=name)
             p = np.sqrt(np.maximum(0, 1 - states.load / event.load))
             p = np.where(states.central_gap > event.central_gap, -p, p)
-            kept = states.load < MOST_LOAD
+            kept = states.load < HOW.most_load
             row = [
                 np.cbrt((1 + p) / 2),
                 states.approach / (1 + tabor),
@@ -82,7 +93,7 @@ def _folds(low: float, high: float) -> tuple[Array, Array]:
             fold = complex_fold(tabor)
             numbers.append((fold.real / (1 + tabor), (abs(fold.imag) / 2 / (1 + tabor)) ** (2 / 3)))
     t = fits.place(tabors, low, high)
-    series = [chebyshev.chebfit(t, values, CUSP_DEGREE) for values in zip(*numbers, strict=True)]
+    series = [chebyshev.chebfit(t, values, HOW.cusp_degree) for values in zip(*numbers, strict=True)]
     return series[0], series[1]
 
 
@@ -110,18 +121,18 @@ def _free(low: float, high: float, t: Array, curves: dict[str, Array]) -> tuple[
     """Middle and slope of the cubic where no fold is near: whatever fits best."""
     tabor, middle, slope = np.array(FREE).T
     first = [
-        chebyshev.chebfit(fits.place(tabor, low, high), y, FREE_DEGREE)
+        chebyshev.chebfit(fits.place(tabor, low, high), y, HOW.free_degree)
         for y in (middle / (1 + tabor), slope / (1 + tabor) ** (2 / 3))
     ]
 
     def off(x: Array) -> Array:
         """Deviations, and by how much the slope is below its least: a cubic of three roots would be a false fold."""
         middle, slope = x[: x.size // 2], x[x.size // 2 :]
-        below = np.minimum(chebyshev.chebval(np.linspace(-1, 1, 200), slope) - LEAST_SLOPE, 0)
+        below = np.minimum(chebyshev.chebval(np.linspace(-1, 1, 200), slope) - HOW.least_slope, 0)
         return np.concatenate([_sums(t, curves, middle, slope, 1)[1], below])
 
     found = np.split(least_squares(off, np.concatenate(first), max_nfev=10).x, 2)
-    wide = [np.pad(x, (0, CUSP_DEGREE - FREE_DEGREE)) for x in found]
+    wide = [np.pad(x, (0, HOW.cusp_degree - HOW.free_degree)) for x in found]
     return wide[0], wide[1]
 
 
@@ -129,7 +140,7 @@ def _sums(t: Array, curves: dict[str, Array], middle: Array, slope: Array, round
     """Coefficients of the sums, and the deviations of the load in pull-off loads."""
     q, s = curves["q"], np.asarray(chebyshev.chebval(t, slope), float)
     y = fits.root_of_cubic(curves["approach"] - chebyshev.chebval(t, middle), s, curves["contact"])
-    basis, series = fits.shapes(y, TERMS), chebyshev.chebvander(t, DEGREE)
+    basis, series = fits.shapes(y, HOW.terms), chebyshev.chebvander(t, HOW.degree)
     A = (basis.T[:, :, None] * series[:, None, :]).reshape(len(q), -1)
     p = 2 * q**3 - 1
     weight, lawson = 12 * q**2 * np.abs(p) + 0.3, np.ones(len(q))

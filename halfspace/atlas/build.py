@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from itertools import pairwise
 from pathlib import Path
@@ -23,14 +24,23 @@ from halfspace.equilibrium.events import approach_scale
 from halfspace.roots import root
 from halfspace.values import Array, Estimate
 
-RTOL = 1e-9
-NODES = 24  # of a piece
-WHOLE = (LEAST, 0.1, 0.5, 2.0, 10.0, 60.0, MOST)  # ends of the pieces of numbers that all curves have
-FOLDED = (0.35, 1.0, 1.6, 2.1)  # ends between the pieces of jumps, in sqrt(ln(tabor/birth))
-NEAR_BIRTH = (0.6975, 0.8)  # Tabor parameters, above the birth of folds, from which it is found
-BIRTH_NODES = 12
-NEXT_BIRTH = 3.974  # Tabor parameter from which curves have a second pair of folds, near which more is checked
-CHECK_POINTS = 8
+
+@dataclass(frozen=True)
+class BuildSettings:
+    """Pieces of the numbers of events, and their nodes."""
+
+    rtol: float = 1e-9  # of all events
+    nodes: int = 24  # of a piece
+    whole: tuple[float, ...] = (LEAST, 0.1, 0.5, 2.0, 10.0, 60.0, MOST)  # ends of pieces of what all curves have
+    folded: tuple[float, ...] = (0.35, 1.0, 1.6, 2.1)  # ends between the pieces of jumps, in sqrt(ln(tabor/birth))
+    near_birth: tuple[float, float] = (0.6975, 0.8)  # Tabor parameters from which the birth of folds is found
+    birth_nodes: int = 12  # of the birth of folds, in ln(tabor)
+    next_birth: float = 3.974  # Tabor parameter from which curves have four folds, near which more is checked
+    check_points: int = 8  # drawn, at which what is built is compared with `halfspace.trace`
+
+
+BUILD = BuildSettings()
+
 
 EVENTS = ("pull_off", "zero_load")
 OF_JUMPS = (
@@ -50,7 +60,7 @@ Entry = dict[str, Any]
 
 def solved(tabor: float) -> dict[str, Estimate]:
     """All numbers of a Tabor parameter by `halfspace.trace`, by their names in the atlas; those there are."""
-    path = trace(tabor, rtol=RTOL)
+    path = trace(tabor, rtol=BUILD.rtol)
     states = {name: path.events[name] for name in EVENTS}
     found = {"energy_released": path.energy}
     if jumps := cycle(path):
@@ -112,11 +122,11 @@ def built(node: Node, digest: str) -> Entry:
         found |= {f"{jump}.{number}": folded(node, jump, number, birth) for number in OF_JUMPS}
         name = f"{jump}.{end}.contact_radius"
         found[name] = radius(node, name, birth, series_of(found[f"{jump}.{end}.central_gap"]))
-    at = sample(CHECK_POINTS, 0, birth.value).tolist()
+    at = sample(BUILD.check_points, 0, birth.value).tolist()
     return {
         "source": {
             "command": "make atlas",
-            "what": f"halfspace.trace(tabor, rtol={RTOL:g}), paraboloid on a half-space, 3-9 law",
+            "what": f"halfspace.trace(tabor, rtol={BUILD.rtol:g}), paraboloid on a half-space, 3-9 law",
             "version": version("fem-adhesion"),
             "digest": digest,
         },
@@ -134,7 +144,7 @@ def sample(count: int, seed: int, birth: float) -> Array:
     """
     random = np.random.default_rng(seed)
     close = count // 8
-    near = birth + 10 ** random.uniform(-5, -1, close), NEXT_BIRTH + random.uniform(-0.1, 0.1, close)
+    near = birth + 10 ** random.uniform(-5, -1, close), BUILD.next_birth + random.uniform(-0.1, 0.1, close)
     spread = np.exp(random.uniform(np.log(LEAST), np.log(MOST), count - 2 * close))
     return np.concatenate([*near, spread])
 
@@ -144,7 +154,7 @@ def birth_of_folds(node: Node) -> Estimate:
 
     There the difference of their loads vanishes as the root of the distance: its square is smooth and changes sign.
     """
-    low, high = np.log(NEAR_BIRTH).tolist()
+    low, high = np.log(BUILD.near_birth).tolist()
 
     def born(nodes: int) -> Estimate:
         places = (low + high) / 2 + (high - low) / 2 * chebyshev.chebpts1(nodes)
@@ -154,13 +164,13 @@ def birth_of_folds(node: Node) -> Estimate:
         x = root(squares, low - (high - low) / 5, low, "the birth of folds; take more nodes", xtol=1e-15)
         return Estimate(math.exp(x), (apart[0] * apart[0]).error / float(squares.deriv()(x)) * math.exp(x))
 
-    fine, coarse = born(BIRTH_NODES), born(BIRTH_NODES - 2)
+    fine, coarse = born(BUILD.birth_nodes), born(BUILD.birth_nodes - 2)
     return Estimate(fine.value, fine.error + abs(fine.value - coarse.value))
 
 
 def whole(node: Node, name: str) -> Entry:
     """Entry of a number that all curves have."""
-    ends = np.log(WHOLE).tolist()
+    ends = np.log(BUILD.whole).tolist()
     power = 2 if name.endswith("contact_radius") else 1
     return entry(ends, [piece(lambda x: node(math.exp(x))[name], *part, power) for part in pairwise(ends)], power)
 
@@ -170,14 +180,14 @@ def folded(node: Node, jump: str, number: str, birth: Estimate) -> Entry:
 
     Beside their birth both jumps are one function of x = sqrt(ln(tabor/birth)): to jump off is to jump on with -x.
     """
-    ends = [0.0, *FOLDED, math.sqrt(math.log(MOST / birth.value))]
+    ends = [0.0, *BUILD.folded, math.sqrt(math.log(MOST / birth.value))]
     sign = 1 if jump == "jump_on" else -1
 
     def either(x: float) -> Estimate:
         return node(birth.value * math.exp(x**2))[f"{'jump_on' if x > 0 else 'jump_off'}.{number}"]
 
     both, error = piece(either, -ends[1], ends[1])
-    first = fitted(chebyshev.chebval(sign * (1 + chebyshev.chebpts1(NODES)) / 2, both)), error
+    first = fitted(chebyshev.chebval(sign * (1 + chebyshev.chebpts1(BUILD.nodes)) / 2, both)), error
     return entry(ends, [first, *(piece(lambda x: either(sign * x), *part) for part in pairwise(ends[1:]))], 1, birth)
 
 
@@ -187,8 +197,8 @@ def radius(node: Node, name: str, birth: Estimate, gap: Series) -> Entry:
     def closed(x: float) -> float:
         return EDGE - float(gap(np.array([birth.value * math.exp(x**2)]))[0][0])
 
-    begin = root(closed, 0.0, FOLDED[0], "the birth of a contact; take more nodes", xtol=1e-15)
-    ends = [begin, *FOLDED, math.sqrt(math.log(MOST / birth.value))]
+    begin = root(closed, 0.0, BUILD.folded[0], "the birth of a contact; take more nodes", xtol=1e-15)
+    ends = [begin, *BUILD.folded, math.sqrt(math.log(MOST / birth.value))]
     pieces = [piece(lambda x: node(birth.value * math.exp(x**2))[name], *part, 2) for part in pairwise(ends)]
     return entry(ends, pieces, 2, birth)
 
@@ -211,7 +221,7 @@ def entry(ends: Sequence[float], pieces: Iterable[tuple[Array, float]], power: i
 
 def piece(at: Callable[[float], Estimate], low: float, high: float, power: int = 1) -> tuple[Array, float]:
     """Chebyshev coefficients of a number's power on a piece of x, and their error: the nodes' and the series' tail."""
-    places = (low + high) / 2 + (high - low) / 2 * chebyshev.chebpts1(NODES)
+    places = (low + high) / 2 + (high - low) / 2 * chebyshev.chebpts1(BUILD.nodes)
     numbers = [at(x) for x in places.tolist()]
     numbers = [number * number if power == 2 else number for number in numbers]
     coefficients = fitted([number.value for number in numbers])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -16,16 +17,25 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from halfspace.accuracy.trace import trace
-from halfspace.atlas.build import EVENTS, RTOL, WHOLE, fitted
-from halfspace.atlas.curves import PARTS, Curve, layout
+from halfspace.atlas.build import BUILD, EVENTS, fitted
+from halfspace.atlas.curves import PIECES, Curve, layout
 from halfspace.atlas.series import Series
 from halfspace.equilibrium.events import usual
 from halfspace.values import Array
 
-TABORS = 18  # nodes of a piece in ln(tabor)
-PLACES = 28  # nodes of a piece of a curve
-TO_LOAD = 60.0  # R dgamma, beyond the ends of all curves
-STEPS = 2.0**38  # units in the largest coefficient of a piece, which are stored as whole numbers
+
+@dataclass(frozen=True)
+class CurvesSettings:
+    """Pieces of the curves, and their nodes."""
+
+    tabors: int = 18  # nodes of a piece in ln(tabor)
+    places: int = 28  # nodes of a piece of a curve
+    to_load: float = 60.0  # R dgamma, beyond the ends of all curves
+    steps: float = 2.0**38  # units in the largest coefficient of a piece, which are stored as whole numbers
+
+
+CURVES = CurvesSettings()
+
 
 States = Mapping[str, Array]
 
@@ -39,9 +49,9 @@ def states(tabor: float, gap: Series) -> dict[str, Array]:
     given central gap are larger, but along the curve.
     """
     width, ends = layout(tabor, gap)
-    t = chebyshev.chebpts1(PLACES)
+    t = chebyshev.chebpts1(CURVES.places)
     gaps = width * np.sinh(np.array([(a + b) / 2 + (b - a) / 2 * t for a, b in pairwise(ends)]))
-    path = trace(tabor, rtol=RTOL, to_load=TO_LOAD)
+    path = trace(tabor, rtol=BUILD.rtol, to_load=CURVES.to_load)
     found = path.at(central_gap=gaps)
     events = [path.events[name] for name in EVENTS]
     numbers = found.approach + gaps, found.load, found.contact_radius**2
@@ -52,7 +62,7 @@ def states(tabor: float, gap: Series) -> dict[str, Array]:
 
 def built(node: Callable[[float], States]) -> dict[str, NDArray[Any]]:
     """Content of the file of curves."""
-    ends = np.log(WHOLE)
+    ends = np.log(BUILD.whole)
     pieces = [piece(node, *part) for part in pairwise(ends.tolist())]
     coefficients, units, errors = (np.array(of_all) for of_all in zip(*pieces, strict=True))
     return {"ends": ends, "coefficients": coefficients, "units": units, "errors": errors}
@@ -60,18 +70,18 @@ def built(node: Callable[[float], States]) -> dict[str, NDArray[Any]]:
 
 def piece(node: Callable[[float], States], low: float, high: float) -> tuple[NDArray[np.int64], Array, Array]:
     """Coefficients on a piece of ln(tabor) as whole numbers, (terms, 3, pieces, terms), their units and errors."""
-    places = (low + high) / 2 + (high - low) / 2 * chebyshev.chebpts1(TABORS)
+    places = (low + high) / 2 + (high - low) / 2 * chebyshev.chebpts1(CURVES.tabors)
     nodes = [node(tabor) for tabor in np.exp(places).tolist()]
     by_tabor = fitted([found["numbers"] for found in nodes])
     c = np.moveaxis(fitted(np.moveaxis(by_tabor, -1, 0)), 0, -1)
-    c[:, 2, :PARTS] = np.nan_to_num(c[:, 2, :PARTS])  # no radius without contact
+    c[:, 2, : PIECES.parts] = np.nan_to_num(c[:, 2, : PIECES.parts])  # no radius without contact
     tails = np.abs(c[-2:]).sum(axis=(0, 3)) + np.abs(c[..., -2:]).sum(axis=(0, 3))
-    unit = np.abs(c).max(axis=(0, 3)) / STEPS
+    unit = np.abs(c).max(axis=(0, 3)) / CURVES.steps
     approach, load, square = tails + unit * c.shape[0] * c.shape[3] / 2
     source = np.max([found["errors"] for found in nodes], axis=0)
     errors = np.array([approach, load, 0 * load, square]) + source[:, None]
     whole = np.round(c / np.where(unit, unit, 1)[..., None]).astype(np.int64)
-    unit[2, :PARTS] = math.nan
+    unit[2, : PIECES.parts] = math.nan
     return whole, unit, errors
 
 
@@ -81,7 +91,7 @@ def deviations(tabor: float, curve: Curve, seed: int = 0) -> tuple[float, float]
     The scale of a load is 2 pi R dgamma, that of a contact radius beta.
     """
     random = np.random.default_rng(seed)
-    path = trace(tabor, rtol=RTOL, to_load=TO_LOAD)
+    path = trace(tabor, rtol=BUILD.rtol, to_load=CURVES.to_load)
     relative, of_errors = [0.0], [0.0]
     ours, theirs = curve.branches("approach"), path.branches("approach")
     for branch in [name for name in ours if name in theirs]:

@@ -24,11 +24,20 @@ from halfspace.errors import InputError
 from halfspace.limits import require_number, require_numbers, require_one_of
 from halfspace.values import Array, Index, States, Valued
 
-PARTS = 3  # pieces of a curve without contact, and as many with
-FARTHEST = 1.9  # central gap at the other end, in (10 + tabor) eps: a contact under fixed grips lands nearer
-COMPRESSED = 1.3  # central gap at the end in compression, in those under no load; the load there is over 5 R dgamma
-SAMPLES = 128  # places on a piece among which turns are looked for
-HALVINGS = 50  # of an interval in which a place is sought
+
+@dataclass(frozen=True)
+class CurveSettings:
+    """Pieces of a curve, and how places on it are sought."""
+
+    parts: int = 3  # pieces of a curve without contact, and as many with
+    farthest: float = 1.9  # central gap at the other end, in (10 + tabor) eps: a contact under fixed grips lands nearer
+    compressed: float = 1.3  # central gap at the end in compression, in that under no load: over 5 R dgamma
+    samples: int = 128  # places on a piece among which turns are looked for
+    halvings: int = 50  # of an interval in which a place is sought
+
+
+PIECES = CurveSettings()
+
 
 OWN = {"approach": 4, "load": 5}  # row of the error of a coordinate, which is zero where that is asked for
 UNITS = {"approach": "eps", "load": "R dgamma", "base": "eps"}
@@ -139,7 +148,7 @@ class Curve(Valued):
 
     def _parts(self, way: Array) -> dict[str, tuple[float, float]]:
         """Places between which a coordinate goes in one direction."""
-        places = np.linspace(0, self._last, self._last * SAMPLES + 1)
+        places = np.linspace(0, self._last, self._last * PIECES.samples + 1)
         rates = self._rate(way, places)
         turns = np.flatnonzero(rates[1:] * rates[:-1] < 0)
         sign = np.sign(rates[turns + 1])
@@ -192,7 +201,7 @@ def _way(coordinate: str, stiffness: float) -> Array:
 
 def _bisected(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
     """Places where a function rises through zero, each between its ends."""
-    for _ in range(HALVINGS):
+    for _ in range(PIECES.halvings):
         middle = (low + high) / 2
         below = function(middle) < 0
         low, high = np.where(below, middle, low), np.where(below, high, middle)
@@ -202,8 +211,8 @@ def _bisected(function: Callable[[Array], Array], low: Array, high: Array) -> Ar
 def layout(tabor: float, gap: Series) -> tuple[float, Array]:
     """Unit w of central gaps, by the series of that under no load, and the ends of the pieces of a curve in x."""
     width = -float(gap(np.array([tabor]))[0][0])
-    ends = np.arcsinh(np.array([FARTHEST * (10 + tabor), EDGE, -COMPRESSED * width]) / width)
-    return width, np.concatenate([np.linspace(a, b, PARTS + 1)[i:] for i, (a, b) in enumerate(pairwise(ends))])
+    ends = np.arcsinh(np.array([PIECES.farthest * (10 + tabor), EDGE, -PIECES.compressed * width]) / width)
+    return width, np.concatenate([np.linspace(a, b, PIECES.parts + 1)[i:] for i, (a, b) in enumerate(pairwise(ends))])
 
 
 @cache
