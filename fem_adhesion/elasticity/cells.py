@@ -73,14 +73,17 @@ class Cells(Valued):
         """Those of some numbers."""
         return Cells(self.space, self.functions, self.inverse[:, :, own], self.radii[own], self.measure[own])
 
-    @property
-    def are_rectangles(self) -> bool:
-        """Whether all are, with straight sides along r and z."""
-        mesh = self.space.mesh
-        if len(mesh.t) != 4 or mesh.doflocs.shape[1] != mesh.nvertices:
-            return False
-        corners = np.sort(mesh.p[:, mesh.t], axis=1)
-        return bool(np.all(corners[:, ::2] == corners[:, 1::2]))
+    @cached_property
+    def upright(self) -> Array:
+        """Sense, 1 or -1, in which a reference coordinate goes along z, 0 for the other, (2, c), of columns' cells.
+
+        Empty unless all are quadrilaterals in which z goes with one of these in proportion, and r with the other alone.
+        """
+        smaller, larger = np.sort(np.abs(self.inverse), axis=0)
+        in_proportion = np.ptp(larger[1], axis=-1) < 1e-9 * larger[1, :, 0]  # but for rounding
+        if self.space.element.refdom.nnodes != 4 or not np.all(smaller < 1e-9 * larger) or not np.all(in_proportion):
+            return np.empty((2, 0))
+        return np.asarray(np.rint(self.inverse[:, 1, :, 0] / larger[1, :, 0]))
 
     @cached_property
     def displacements(self) -> Index:
@@ -223,7 +226,7 @@ def stiffness_of(space: Space, materials: Sequence[Elastic], *, remedy: bool = T
     for cells, (poisson, modulus) in zip(space.regions(materials), materials, strict=True):
         part = space if len(materials) == 1 else Space(space.mesh.restrict(cells), space.element)
         every, remedied = Cells.of(part), remedy and projects(space, poisson)
-        by = _by_columns if every.are_rectangles else _by_batches
+        by = _by_columns if every.upright.size else _by_batches
         for own, K in by(every, poisson, remedied):
             yield cells[own], modulus * K
 
@@ -235,7 +238,7 @@ def _by_batches(cells: Cells, poisson: float, remedied: bool) -> Iterator[tuple[
 
 
 def _by_columns(cells: Cells, poisson: float, remedied: bool) -> Iterator[tuple[Index | slice, Array]]:
-    """The same of rectangles, those above one another at once: a half-space under a sphere takes half of the time.
+    """The same of upright cells, those above one another at once: a half-space under a sphere takes half of the time.
 
     The measure is in proportion to their height, derivatives by z to its reciprocal: of the stiffness a part without
     these grows as the height, one with two of them falls as it grows, and one with one is the same for all.
@@ -244,7 +247,8 @@ def _by_columns(cells: Cells, poisson: float, remedied: bool) -> Iterator[tuple[
     others, lam = 1 - BY_Z, lame_parameters(poisson)[0]
     pairs = np.outer(others, others), np.outer(others, BY_Z) + np.outer(BY_Z, others), np.outer(BY_Z, BY_Z)
     heights = 1 / np.abs(cells.inverse[:, 1, :, 0]).max(axis=0)
-    _, first, column = np.unique(cells.radii[:, [0, -1]], axis=0, return_index=True, return_inverse=True)
+    alike = np.hstack([cells.radii[:, [0, -1]], cells.upright.T])
+    _, first, column = np.unique(alike, axis=0, return_index=True, return_inverse=True)
     for numbers, few in cells.some(first).batches():
         parts = np.stack([few.stiffness(D * pair) for pair in pairs])
         if remedied:

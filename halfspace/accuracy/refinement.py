@@ -156,14 +156,13 @@ class Ascent(Valued):
 def ascend(state: State, lowest: Rung, rtol: float, rung: Callable[[int], Rung], levels: Sequence[int]) -> Ascent:
     """Solve for the events of a rung on those of the levels above it, one after the other, until `rtol` is met.
 
-    Or as long as there is memory for the next level, where that is not the first. A twin makes errors no smaller: the
-    rungs on which `rtol` is missed without it, but for the last, do without.
+    Or as long as there is memory for the next level, where that is not the first.
     """
     first, *others = levels
     ascent = _risen(lowest, state, rung(first), rtol)
     for level in others:
-        if not ascent.misses(rtol) and not (ascent := ascent.with_twin()).misses(rtol):
-            return ascent
+        if not ascent.misses(rtol):
+            break
         try:
             ascent = _risen(ascent.higher, ascent.state, rung(level), rtol)
         except GridTooLarge:
@@ -172,9 +171,13 @@ def ascend(state: State, lowest: Rung, rtol: float, rung: Callable[[int], Rung],
 
 
 def _risen(below: Rung, state: State, higher: Rung, rtol: float) -> Ascent:
-    """Solve for the events of one rung on the next; none is told better than to a part of the accuracy asked for."""
+    """Solve for the events of one rung on the next; none is told better than to a part of the accuracy asked for.
+
+    A twin makes errors of loads and approaches no smaller: without it is a rung on which `rtol` is missed in any case.
+    """
     higher = replace(higher, rule=replace(higher.rule, least=LEAST * rtol))
-    return Ascent(below, higher, higher.chains(state))
+    alone = Ascent(below, higher, higher.chains(state))
+    return alone if alone.misses(rtol) else alone.with_twin()
 
 
 def _margin(found: Mapping[str, Chains], rung: Rung) -> Estimate | None:

@@ -12,7 +12,7 @@ from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.events import FOLDS, USUAL, ErrorRule, Event, estimate_event, is_event
 from halfspace.equilibrium.search import Chains
-from halfspace.equilibrium.states import met_again, with_beside
+from halfspace.equilibrium.states import after_coarser, met_again, with_twin
 from halfspace.errors import NotConverged, Unsolved
 from halfspace.values import Valued
 
@@ -83,12 +83,12 @@ class Rung(Valued):
             if not found:
                 return found
             chain.append(found)
-        return with_beside(chain, None, self.coarser, met_again)
+        return [after_coarser(chain, self.coarser, met_again)]
 
     def beside_twin(self, chains: Chains) -> Chains | Unsolved:
         """The chains of one event with that from the twin."""
         own, *twins = chains
-        return chains if twins else with_beside(own, self.twin, None, met_again)
+        return chains if twins else with_twin(list(own), self.twin, met_again)
 
     def estimates(self, found: Mapping[str, Chains]) -> dict[str, Event]:
         """Events, with their changes along the chains as errors."""

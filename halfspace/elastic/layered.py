@@ -24,7 +24,7 @@ from itertools import pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
+from scipy import sparse
 from scipy.special import ellipkm1
 
 from halfspace.elastic.compliance import ElasticOperator, SurfaceNodes, panels, to_infinity
@@ -265,36 +265,36 @@ def nearly_homogeneous(
     degree = int(np.ceil(np.log(2 / left) / np.arcsinh(pole)))
     ends = least * ratio ** np.arange(np.ceil(np.log(HOW.wider * widest / least) / np.log(ratio)) + 1)
     lengths = [chebyshev_lengths(*part, degree) for part in pairwise(ends.tolist())]
-    rows = [_sampled(unit, images.smooth / float(radii.max()), left)[1] for radii in lengths]
+    rows = [_sampled(unit, images, radii, left)[1] for radii in lengths]
     make = partial(_in_units, images, unit, widest, until, left)
     return NearlyHomogeneous(unit, Piecewise(ends, lengths, make), rows)
 
 
 def _in_units(images: Images, unit: ElasticOperator, widest: float, until: float, left: float, radii: Array) -> Array:
     farthest, scaled = max(radii[-1], widest) + until - widest, images.in_units(radii, left)
-    samples, _ = _sampled(unit, scaled.smooth, left)
+    samples, _ = _sampled(unit, images, radii, left)
     return image_kernels(scaled, unit, farthest / float(radii.min()), samples=samples)
 
 
-def _sampled(body: SurfaceNodes, smooth: float, left: float) -> tuple[Array, Array]:
-    """Radii (n,) at which to know what is smooth over a distance, and rows (q, n) by which it is known at the nodes.
+def _sampled(body: SurfaceNodes, images: Images, radii: Array, left: float) -> tuple[Array, sparse.csr_array]:
+    """Samples (n,) of the radius for images in units of some lengths, and rows (q, n) from these to a body's nodes.
 
-    Cells that lie within such a distance have as many of Gauss's points in common as leave a part `left` of a kernel
-    at that depth, whose poles lie two half-lengths beside the real axis; where their nodes are no more, these serve.
-    A contact on a thin layer, which hardly yields, is told by what the half-space and the images do not cancel: of its
-    width that is the distance, and the part is one of that.
+    Images are smooth over a distance. Cells that lie within it together have as many of Gauss's points in common as
+    leave a part `left` of a kernel at that depth, whose poles lie two half-lengths beside the real axis; where their
+    nodes are no more, these serve. Beside long cells it is what the rules for these leave, where one gives way to the
+    next.
     """
-    count = int(np.ceil(np.log(2 / (left * min(smooth, 1.0))) / np.arcsinh(2.0)))
+    smooth, count = images.smooth / float(radii.max()), int(np.ceil(np.log(2 / left) / np.arcsinh(2.0)))
     first, last = np.floor(body.cells[:-1] / smooth), np.ceil(body.cells[1:] / smooth)
     within = np.where(last - first == 1, first, -1 - np.arange(first.size))
     samples, rows = [], []
     for cells in np.split(np.arange(first.size), 1 + np.flatnonzero(np.diff(within))):
         nodes = body.radii[body.cell_nodes[cells].ravel()]
         points = gauss_points(body.cells[[cells[0], cells[-1] + 1]], count)[0].ravel()
-        samples.append(points if points.size < nodes.size else nodes)
+        samples.append(points if cells.size > 1 and points.size < nodes.size else nodes)
         rows.append(polynomial(samples[-1], nodes))
     beyond = body.radii[body.beyond]
-    return np.concatenate([*samples, beyond]), block_diag(*rows, np.eye(beyond.size))
+    return np.concatenate([*samples, beyond]), sparse.csr_array(sparse.block_diag([*rows, np.eye(beyond.size)]))
 
 
 def _blocks(count: int, size: int) -> list[slice]:

@@ -9,10 +9,11 @@ the edge keeps its nodes along the whole path, and the contact radius is one mor
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
+from scipy import sparse
 
 from halfspace.elastic.compliance import ElasticOperator, Operator, SurfaceNodes, barycentric, lagrange
 from halfspace.elastic.grid import SurfaceCoordinate, gauss_points
@@ -105,7 +106,7 @@ class NearlyHomogeneous(Homogeneous):
     """
 
     remainder: Piecewise
-    rows: Sequence[Array]
+    rows: Sequence[sparse.csr_array] = field(compare=False)
 
     @property
     def served(self) -> tuple[float, float]:
@@ -118,7 +119,7 @@ class NearlyHomogeneous(Homogeneous):
 
     def _made(self, scale: float) -> ElasticOperator:
         rows = self.rows[self.remainder.part(scale)]
-        compliance = self.unit.compliance + rows @ self.remainder.at(scale, 0) @ rows.T * self.unit.weights
+        compliance = self.unit.compliance + rows @ (rows @ self.remainder.at(scale, 0).T).T * self.unit.weights
         return replace(self.unit, compliance=compliance).scaled(scale)
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:

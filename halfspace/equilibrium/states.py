@@ -81,19 +81,20 @@ class Ladder(Valued):
             if isinstance(there, Unsolved):
                 return there
             chain.insert(0, there)
-        return with_beside(chain, self.twin, self.coarser, again)
+        return with_twin(after_coarser(chain, self.coarser, again), self.twin, again)
 
 
-def with_beside(
-    chain: Sequence[T], twin: Stage | None, coarser: Stage | None, again: Callable[[Stage, T], T | Unsolved]
-) -> list[list[T]] | Unsolved:
-    """Chains of a state: its own, after a coarser discretisation where that has it, and from a twin to its last."""
-    fine = chain[-1]
-    own = [again(coarser, fine) or chain[0], *chain] if coarser else list(chain)
+def after_coarser(chain: Sequence[T], coarser: Stage | None, again: Callable[[Stage, T], T | Unsolved]) -> list[T]:
+    """Chain of a state after a coarser discretisation, where that has it."""
+    return [again(coarser, chain[-1]) or chain[0], *chain] if coarser else list(chain)
+
+
+def with_twin(own: list[T], twin: Stage | None, again: Callable[[Stage, T], T | Unsolved]) -> list[list[T]] | Unsolved:
+    """Chains of a state: its own, and from a twin to its last."""
     if twin is None:
         return [own]
-    there = again(twin, fine)
-    return there if isinstance(there, Unsolved) else [own, [there, fine]]
+    there = again(twin, own[-1])
+    return there if isinstance(there, Unsolved) else [own, [there, own[-1]]]
 
 
 def met_again(stage: Stage, state: Located) -> Located | Unsolved:

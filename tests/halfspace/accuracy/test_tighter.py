@@ -1,5 +1,7 @@
 """Estimates hold what a tighter tolerance finds, in contacts each of which was once outside, or without an end."""
 
+from dataclasses import replace
+
 import pytest
 from agreement import differing
 
@@ -82,19 +84,38 @@ def test_the_change_before_the_last_counts_for_a_fifth_on_grids_of_the_half_spac
 
 def test_only_the_last_rung_is_solved_on_its_twin(monkeypatch):
     """Which makes errors no smaller: where they are too large without it, the next rung is climbed to first."""
-    asked, beside = [], stages.with_beside
+    asked, with_twin = [], stages.with_twin
 
-    def noting(chain, twin, coarser, again):
+    def noting(own, twin, again):
         asked.append(twin)
-        return beside(chain, twin, coarser, again)
+        return with_twin(own, twin, again)
 
-    monkeypatch.setattr(stages, "with_beside", noting)
+    monkeypatch.setattr(stages, "with_twin", noting)
     path = halfspace.trace(1.0, law=Dugdale(0.1), rtol=1e-4)
     assert path.met
     assert path.settings["events"]["nodes"] >= path.settings["curve"]["nodes"] + 3  # the second rung has three more
     twins = [twin for twin in asked if twin is not None]
     assert len(twins) >= len(path.events)
     assert all(twin is path.ladder.twin for twin in twins)
+
+
+def test_a_rung_whose_twin_is_far_off_is_left_for_the_next(monkeypatch):
+    """That of the first rung is pretended to be, whose own chain meets the tolerance."""
+    usual = halfspace.trace(1.0, rtol=1e-4)
+    firsts, with_twin = [], stages.with_twin
+
+    def pretending(own, twin, again):
+        chains = with_twin(own, twin, again)
+        firsts.append(twin)
+        if twin is firsts[0]:
+            point = chains[1][0].point
+            chains[1][0] = replace(chains[1][0], point=replace(point, observables=point.observables + 0.1))
+        return chains
+
+    monkeypatch.setattr(stages, "with_twin", pretending)
+    path = halfspace.trace(1.0, rtol=1e-4)
+    assert path.met
+    assert path.settings["events"]["nodes"] > usual.settings["events"]["nodes"]
 
 
 def test_a_layers_twin_has_images_of_its_own():

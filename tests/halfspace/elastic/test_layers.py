@@ -142,9 +142,8 @@ def test_a_stiff_coating_is_known_between_its_radii():
     """Against images integrated where the contact is; what they bend by is a hundred times the coating's own yield."""
     for body in (Coated(0.5, 100.0), Coated(0.5, 10.0), Coated(0.5, 0.1)):
         scales, images = Scales(3.0, body=body), images_of(body)
-        operator = layered_charts(scales, images, resolution_for(scales, 1e-3))[1].problem.operator
-        known = operator.remainder.lengths[0]
-        for a in np.sqrt(known[1:] * known[:-1])[::4]:
+        operator = layered_charts(scales, images, resolution_for(scales, 1e-6))[1].problem.operator
+        for a in np.concatenate([np.sqrt(known[1:] * known[:-1])[::4] for known in operator.remainder.lengths]):
             here = operator.at(a)
             alone = replace(here, compliance=operator.unit.scaled(a).compliance)
             exact = alone.compliance + image_compliance(images, alone)
@@ -178,14 +177,15 @@ def test_a_layer_goes_over_into_jkrs_as_ln_mu_over_mu_squared():
 
 @pytest.mark.parametrize("body", [Layer(2.0, 0.3), SOFT_BETWEEN, Coated(0.1, 100.0)], ids=repr)
 def test_images_in_units_of_the_contact_deflect_alike(body):
-    """From the least contact to one that is wider than was planned; the rule for long cells is that of the widest."""
+    """From the least contact to one wider than was planned; the rule for long cells is that of the part's widest."""
     images = images_of(body)
     rounded = 1e-15 * np.abs(images.strengths).sum()  # up to 1e6 each, of either sign
     unit = compliance.panels(grid.graded(1.0, 1e-4, 20.0, growth=2.0), 8)
     pressure = np.exp(-(unit.radii**2))
     operator = nearly_homogeneous(images, unit, (0.3, 3.0), np.inf, 1e-12)
     assert operator.rows[0].shape[1] < unit.radii.size
-    for a, widest in ((operator.served[0], 3.0), (0.95, 3.0), (2.999, 3.0), (7.0, 30.0)):
+    for a in (operator.served[0], 0.95, 2.999, 7.0):
+        widest = operator.remainder.lengths[operator.remainder.part(a)].max()
         own = replace(images, smooth=images.smooth * a / widest)
         wanted = a * unit.compliance + image_compliance(own, unit.scaled(a))
         found, wanted = (each @ pressure for each in (operator.at(a).compliance, wanted))
@@ -193,17 +193,21 @@ def test_images_in_units_of_the_contact_deflect_alike(body):
     assert operator.served[0] == pytest.approx(0.3)
 
 
-def test_images_serve_a_contact_wider_than_the_attraction():
-    """Under a load a cone on a thin layer is forty times as wide as it attracts; there deflections were of any size."""
+@pytest.mark.parametrize(("rtol", "off"), [(1e-2, 5e-4), (1e-4, 1e-5)])
+def test_images_serve_a_contact_wider_than_the_attraction(rtol, off):
+    """Under a load a cone on a thin layer is forty times as wide as it attracts; there deflections were of any size.
+
+    The rules beside long cells leave as much as that, and samples of the radius have others than the nodes.
+    """
     body, profile = Layer(0.05, 0.3), Hyperboloid(0.05).surface(300.0)
     scales, images = Scales(300.0, profile=profile, body=body), images_of(body)
-    operator = layered_charts(scales, images, resolution_for(scales, 1e-4), 1000.0)[1].problem.operator
+    operator = layered_charts(scales, images, resolution_for(scales, rtol), 1000.0)[1].problem.operator
     pressure = np.sqrt(np.maximum(1 - operator.unit.radii**2, 0))
     for radius in scales.widest_radius(1000.0) * np.array([1.0, 0.1]):
         own = layered.layered(images, operator.unit.scaled(radius), np.inf)
         found, wanted = (each.compliance @ pressure for each in (operator.at(radius), own))
         inside = operator.unit.radii < 1.0
-        assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=1e-5 * np.abs(wanted).max())
+        assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=off * np.abs(wanted).max())
 
 
 def test_a_central_gap_is_read_off_an_even_polynomial():
