@@ -17,11 +17,12 @@ from fem_adhesion.elasticity.elimination import DISSECTED
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy import stages as ladders
+from halfspace.accuracy.finite_bodies import Made
 from halfspace.accuracy.grids import GRIDS, Resolution, half_space_charts
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung, charted
 from halfspace.accuracy.standing import Standing, left_between, sized, standing
-from halfspace.elastic.compliance import ElasticOperator, to_infinity
+from halfspace.elastic.compliance import to_infinity
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import ErrorRule
@@ -136,16 +137,14 @@ def discretised_block(scene: Scene, to_load: float, how: Discretisation, size: f
 def block_charts(scene: Scene, how: Discretisation, radius: float, to_load: float) -> Charts:
     """Charts of the scene's block of a size in beta, continued by a half-space: the half-space's by other operators."""
     extent = np.sqrt(2 * scene.tabor * float(scene.surface.height(np.array(radius))))
-    made: list[Discretised] = []
 
-    def with_infinite_cell(_: int, reach: float, lines: Array) -> ElasticOperator:
-        made.append(discretise(scene, lines, how))
-        return to_infinity(made[-1].operator, how.degree + 1, reach)
+    def with_infinite_cell(_: int, reach: float, lines: Array) -> Made:
+        made = discretise(scene, lines, how)
+        return to_infinity(made.operator, how.degree + 1, reach), made.unknowns
 
     resolution = Resolution(how.degree + 2, how.finest, how.growth, extent)
     charts = half_space_charts(scene.scales, resolution, to_load=to_load, make=with_infinite_cell)
-    own = zip(charts, made, strict=True)  # an event stays on the chart on which it was found
-    return tuple(replace(chart, unknowns=its.unknowns, leave=np.inf) for chart, its in own)
+    return tuple(replace(chart, leave=np.inf) for chart in charts)  # an event stays on the chart on which it was found
 
 
 # Bodies with a length

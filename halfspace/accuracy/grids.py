@@ -116,13 +116,14 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
     return grid.graded(0.0, spacing, max(outer, reach + spacing), growth=growth, until=reach)
 
 
-MakeOperator = Callable[[int, float, Array], compliance.ElasticOperator]
-"""Makes an operator from the nodes in a cell, `Scales.tail_reach` and the ends of the cells."""
+MakeOperator = Callable[[int, float, Array], Made]
+"""Makes an operator from the nodes in a cell, `Scales.tail_reach` and the ends of the cells, and tells its unknowns."""
 
 
-def endless(nodes: int, reach: float, breaks: Array) -> compliance.ElasticOperator:
+def endless(nodes: int, reach: float, breaks: Array) -> Made:
     """Operator of the half-space on panels of so many nodes, the last of which is infinite, see `Scales.tail_reach`."""
-    return compliance.to_infinity(compliance.panels(breaks, nodes), nodes, reach)
+    operator = compliance.to_infinity(compliance.panels(breaks, nodes), nodes, reach)
+    return operator, operator.radii.size
 
 
 def half_space_charts(
@@ -130,13 +131,13 @@ def half_space_charts(
 ) -> tuple[Chart, ...]:
     """Charts of the half-space: centred on the axis and, unless that is fine throughout, following the contact edge."""
     lines, until, further = rings(scales, resolution, to_load)
-    centred = make(resolution.nodes, scales.tail_reach, lines)
+    centred, unknowns = make(resolution.nodes, scales.tail_reach, lines)
     leave = until / CHARTS.leave  # the end of the equal cells
-    first = Chart(contact_of(scales, centred), centred.radii.size, until, leave)
+    first = Chart(contact_of(scales, centred), unknowns, until, leave)
     if further is None:
         return (first,)
-    edge = make(resolution.nodes, scales.tail_reach, further)
-    return first, Chart(contact_of(scales, Homogeneous(edge)), edge.radii.size)
+    edge, unknowns = make(resolution.nodes, scales.tail_reach, further)
+    return first, Chart(contact_of(scales, Homogeneous(edge)), unknowns)
 
 
 def under_sphere(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> SizedBody:

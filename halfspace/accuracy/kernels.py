@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
+from halfspace.accuracy.finite_bodies import Made
 from halfspace.accuracy.grids import (
     GRIDS,
     MakeOperator,
@@ -26,7 +27,6 @@ from halfspace.accuracy.refinement import MOST_RUNGS
 from halfspace.accuracy.stages import Discretised, charted
 from halfspace.accuracy.standing import sized
 from halfspace.elastic import compliance
-from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.extrapolated import divided, extrapolated
 from halfspace.errors import InputError
 from halfspace.limits import require_between, require_one_of
@@ -70,10 +70,11 @@ class Kernel:
         return charted(half_space_charts(scales, resolution, to_load=to_load, make=self.make))
 
 
-def _straight(kind: str, parts: int, intervals: int, reach: float, cells: Array) -> ElasticOperator:
+def _straight(kind: str, parts: int, intervals: int, reach: float, cells: Array) -> Made:
     """Operator on cells divided into intervals, by one of `compliance`."""
     inner = extrapolated(getattr(compliance, kind), divided(cells, intervals), parts)
-    return compliance.to_infinity(inner, INTERVALS.beyond, reach)
+    operator = compliance.to_infinity(inner, INTERVALS.beyond, reach)
+    return operator, operator.radii.size
 
 
 def _finer(scales: Scales, rtol: float, level: int) -> tuple[Resolution, ...]:
