@@ -21,10 +21,10 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from itertools import pairwise, product
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 from scipy.special import ellipkm1
 
 from halfspace.elastic.compliance import ElasticOperator, SurfaceNodes, panels, to_infinity
@@ -34,6 +34,9 @@ from halfspace.elastic.layers import LayeredBody, surface_compliance, total_thic
 from halfspace.elastic.operators import NearlyHomogeneous, Piecewise, chebyshev_lengths, nodes_beside
 from halfspace.errors import InputError, NotConverged
 from halfspace.values import Array, Index, Mask, Valued
+
+if TYPE_CHECKING:
+    from scipy import sparse
 
 Complex = NDArray[np.complex128]
 
@@ -284,6 +287,8 @@ def _sampled(body: SurfaceNodes, images: Images, radii: Array, left: float) -> t
     nodes are no more, these serve. Beside long cells it is what the rules for these leave, where one gives way to the
     next.
     """
+    from scipy import sparse  # it takes time to load, and few need it
+
     smooth, count = images.smooth / float(radii.max()), int(np.ceil(np.log(2 / left) / np.arcsinh(2.0)))
     first, last = np.floor(body.cells[:-1] / smooth), np.ceil(body.cells[1:] / smooth)
     within = np.where(last - first == 1, first, -1 - np.arange(first.size))

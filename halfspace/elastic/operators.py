@@ -11,13 +11,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import sparse
 
 from halfspace.elastic.compliance import ElasticOperator, Operator, SurfaceNodes, barycentric, lagrange
 from halfspace.elastic.grid import SurfaceCoordinate, gauss_points
 from halfspace.values import Array, Index, Recent, Valued
+
+if TYPE_CHECKING:  # it takes time to load, and few need it
+    from scipy import sparse
 
 ROOM = 3e8  # bytes of the store
 STORE = Recent(ROOM)
