@@ -25,6 +25,10 @@ class ContactTooWide(NotConverged):
     """The contact spreads over so much of the body that its elasticity is no longer that of small slopes."""
 
 
+class HeldApart(NotConverged):
+    """The law holds the surfaces apart, by a barrier or a second minimum, up to the load at which the curve ends."""
+
+
 class IllPosed(NotConverged):
     """Nothing holds waves as short as the cells: what is computed belongs to them, on finer ones too."""
 

@@ -30,7 +30,7 @@ from halfspace.equilibrium.search import (
     turns,
 )
 from halfspace.equilibrium.states import Ladder, met_again
-from halfspace.errors import ContactTooWide, GridTooLarge, IllPosed, InputError, NotConverged, Unsolved
+from halfspace.errors import ContactTooWide, GridTooLarge, HeldApart, IllPosed, InputError, NotConverged, Unsolved
 from halfspace.values import Estimate, Valued
 
 T = TypeVar("T")
@@ -57,7 +57,7 @@ def climb(
         except GridTooLarge as error:
             remedy = "take a larger rtol or a smaller tabor"
             raise GridTooLarge(f"rtol = {rtol:g} takes grids of {error}; {remedy}") from error
-        except (ContactTooWide, IllPosed):  # for any grid
+        except (ContactTooWide, HeldApart, IllPosed):  # for any grid
             raise
         except NotConverged:
             if start == most_rungs - 1:

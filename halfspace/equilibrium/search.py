@@ -29,7 +29,7 @@ from halfspace.equilibrium.conditions import (
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct
-from halfspace.errors import ContactTooWide, NotConverged, Unsolved, required
+from halfspace.errors import ContactTooWide, HeldApart, NotConverged, Unsolved, required
 from halfspace.scales import BRADLEY
 
 Bracket = tuple[Traceable, Point, Point]
@@ -105,7 +105,7 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     They are ``pull_off`` (the deepest minimum of the load), ``jump_on`` (the first fold from separation), ``jump_off``
     (the first from compression), ``zero_load``, and the two states between which the energy is taken, ``separated`` and
     ``zero_approach``. NotConverged if the curve ends before one of those that it must have: for want of body, it is a
-    ContactTooWide.
+    ContactTooWide; as HeldApart if the surfaces do not touch.
     """
     _require_touching(segments)
     separated = segments[0].problem.interface.scales.separated_approach
@@ -125,10 +125,10 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
 
 
 def _require_touching(segments: Sequence[Segment]) -> None:
-    """Raise NotConverged if a barrier, or a second minimum farther out, holds the surfaces apart to the curve's end."""
+    """Raise HeldApart if a barrier, or a second minimum farther out, holds the surfaces apart to the curve's end."""
     law, last = segments[0].problem.interface.law, segments[-1].points[-1].observables
     if law.outermost and last[CENTRAL_GAP] > law.innermost:
-        raise NotConverged(
+        raise HeldApart(
             f"the law holds the surfaces {last[CENTRAL_GAP]:.3g} eps apart at the curve's end, load {last[LOAD]:.3g} "
             f"R dgamma, limit: {law.innermost:.3g} eps in contact; take a larger to_load"
         )
