@@ -27,7 +27,7 @@ BY_ROOM = {  # families that a room's settings decide
     "halfspace.elastic": ("layers", "sphere's profile"),
     "halfspace": ("half-space", "laws and profiles", "sphere's profile", "layers"),
     "fem_adhesion.bodies.layers": ("layers by elements",),
-    "fem_adhesion.discretise": ("block", "layers by elements"),
+    "fem_adhesion.discretise": ("block", "hemisphere, bonded", "layers by elements"),
     "fem_adhesion.finite_strain": ("finite strain",),
 }
 

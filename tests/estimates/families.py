@@ -542,7 +542,7 @@ FAMILIES = {
     "layers, drawn": events(
         at(drawn(drawing.on_layers, 12), 2, 4, 6), at(drawn(drawing.on_layers, 1), 4), HS, on_layers
     ),
-    "layers by elements": events(at(COATED, *range(2, 6)), at(COATED[3:4], 3), FE, on_layers),
+    "layers by elements": events(at(COATED, *range(2, 6)), at(COATED[3:4], 3, 5), FE, on_layers),
     "elements, drawn": events(
         at(drawn(drawing.of_elements, 12), 2, 4, 6), at(drawn(drawing.of_elements, 1), 3), FE, any_scene
     ),
