@@ -36,10 +36,10 @@ from halfspace.values import Array, Estimate
 class AtlasSettings:
     """Pieces of the atlas of spheres, and how closely it is fitted."""
 
-    rtol: float = 1e-5
+    rtol: float = 1e-5  # of all events
     births: tuple[int, int] = (10, 8)  # nodes of the birth of folds in (R/eps)^(-1/4) and Poisson's ratio
     noise: float = 1e-6  # of what is fitted, as it is expected, beside a third of the error that `trace` states
-    check_points: int = 8
+    check_points: int = 8  # drawn, at which what is built is compared with `trace`
 
 
 HOW = AtlasSettings()

@@ -30,8 +30,8 @@ class LikelihoodSettings:
     rounds: int = 5  # of dividing runs and fitting; two are usual
     far_off: float = 3.0  # times the measured pull-off force, or a part of it, that no fit has
     wall: float = 1e4  # residual of a factor of e beyond: more than those of all samples of a wrong model
-    step: float = 1e-3  # of derivatives by coordinates and ln tabor: they see past the kinks and errors of a curve
-    shift: float = 0.01  # of derivatives by coordinates and ln tabor: they see past the kinks and errors of a curve
+    step: float = 1e-3  # of derivatives by coordinates, which see past the kinks and errors of a curve
+    shift: float = 0.01  # the same by ln tabor
 
 
 FITS = LikelihoodSettings()

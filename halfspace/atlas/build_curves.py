@@ -25,7 +25,7 @@ from halfspace.values import Array
 
 
 @dataclass(frozen=True)
-class CurvesSettings:
+class NodeSettings:
     """Pieces of the curves, and their nodes."""
 
     tabors: int = 18  # nodes of a piece in ln(tabor)
@@ -34,7 +34,7 @@ class CurvesSettings:
     steps: float = 2.0**38  # units in the largest coefficient of a piece, which are stored as whole numbers
 
 
-CURVES = CurvesSettings()
+CURVES = NodeSettings()
 
 
 States = Mapping[str, Array]

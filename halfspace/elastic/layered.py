@@ -284,14 +284,17 @@ def _sampled(body: SurfaceNodes, images: Images, radii: Array, left: float) -> t
 
     Images are smooth over a distance. Cells that lie within it together have as many of Gauss's points in common as
     leave a part `left` of a kernel at that depth, whose poles lie two half-lengths beside the real axis; where their
-    nodes are no more, these serve. Beside long cells it is what the rules for these leave, where one gives way to the
-    next.
+    nodes are no more, these serve. So they do beside long cells, where one rule gives way to the next: what the cells
+    deflect is not smooth there.
     """
     from scipy import sparse  # it takes time to load, and few need it
 
     smooth, count = images.smooth / float(radii.max()), int(np.ceil(np.log(2 / left) / np.arcsinh(2.0)))
-    first, last = np.floor(body.cells[:-1] / smooth), np.ceil(body.cells[1:] / smooth)
-    within = np.where(last - first == 1, first, -1 - np.arange(first.size))
+    begin, end, length = body.cells[:-1], body.cells[1:], np.diff(body.cells)
+    first, last = np.floor(begin / smooth), np.ceil(end / smooth)
+    apart = np.maximum(begin - end[:, None], begin[:, None] - end)
+    beside = ((apart < HOW.near * length) & (length > smooth)).any(axis=1)
+    within = np.where((last - first == 1) & ~beside, first, -1 - np.arange(first.size))
     samples, rows = [], []
     for cells in np.split(np.arange(first.size), 1 + np.flatnonzero(np.diff(within))):
         nodes = body.radii[body.cell_nodes[cells].ravel()]

@@ -142,7 +142,7 @@ def test_a_stiff_coating_is_known_between_its_radii():
     """Against images integrated where the contact is; what they bend by is a hundred times the coating's own yield."""
     for body in (Coated(0.5, 100.0), Coated(0.5, 10.0), Coated(0.5, 0.1)):
         scales, images = Scales(3.0, body=body), images_of(body)
-        operator = layered_charts(scales, images, resolution_for(scales, 1e-6))[1].problem.operator
+        operator = layered_charts(scales, images, resolution_for(scales, 1e-3))[1].problem.operator
         for a in np.concatenate([np.sqrt(known[1:] * known[:-1])[::4] for known in operator.remainder.lengths]):
             here = operator.at(a)
             alone = replace(here, compliance=operator.unit.scaled(a).compliance)
@@ -193,12 +193,9 @@ def test_images_in_units_of_the_contact_deflect_alike(body):
     assert operator.served[0] == pytest.approx(0.3)
 
 
-@pytest.mark.parametrize(("rtol", "off"), [(1e-2, 5e-4), (1e-4, 1e-5)])
-def test_images_serve_a_contact_wider_than_the_attraction(rtol, off):
-    """Under a load a cone on a thin layer is forty times as wide as it attracts; there deflections were of any size.
-
-    The rules beside long cells leave as much as that, and samples of the radius have others than the nodes.
-    """
+@pytest.mark.parametrize("rtol", [1e-2, 1e-4])
+def test_images_serve_a_contact_wider_than_the_attraction(rtol):
+    """Under a load a cone on a thin layer is forty times as wide as it attracts; there deflections were of any size."""
     body, profile = Layer(0.05, 0.3), Hyperboloid(0.05).surface(300.0)
     scales, images = Scales(300.0, profile=profile, body=body), images_of(body)
     operator = layered_charts(scales, images, resolution_for(scales, rtol), 1000.0)[1].problem.operator
@@ -207,7 +204,7 @@ def test_images_serve_a_contact_wider_than_the_attraction(rtol, off):
         own = layered.layered(images, operator.unit.scaled(radius), np.inf)
         found, wanted = (each.compliance @ pressure for each in (operator.at(radius), own))
         inside = operator.unit.radii < 1.0
-        assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=off * np.abs(wanted).max())
+        assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=1e-5 * np.abs(wanted).max())
 
 
 def test_a_central_gap_is_read_off_an_even_polynomial():
